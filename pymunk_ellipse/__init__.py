@@ -1,0 +1,6 @@
+"""Exact ellipses for pymunk."""
+
+from .ellipse import Ellipse
+from .mass import area_for_ellipse, moment_for_ellipse
+
+__all__ = ["Ellipse", "area_for_ellipse", "moment_for_ellipse"]

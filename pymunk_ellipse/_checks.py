@@ -1,0 +1,59 @@
+"""Checks of arguments: each names the argument and the value it does not take."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from pymunk import Vec2d
+
+# Chipmunk multiplies up to four lengths for a moment; beyond these bounds that over- or underflows.
+SMALLEST_SEMI_AXIS = 1e-50
+LARGEST_SEMI_AXIS = 1e50
+
+# The contact of a thinner ellipse would drown in roundoff: its depth is right to about 1e-15 of the longer semi-axis.
+LARGEST_ASPECT_RATIO = 1e6
+
+
+def number(name: str, value: Any) -> float:
+    """value as a finite float."""
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"{name} must be a number, got {value!r}")
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise TypeError(f"{name} must be a number, got {value!r}") from error
+    if not isfinite(result):
+        raise ValueError(f"{name} must be finite, got {value!r}")
+    return result
+
+
+def point(name: str, value: Any) -> Vec2d:
+    """value as a vector of two finite floats."""
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"{name} must be two numbers, got {value!r}")
+    try:
+        x, y = value
+    except TypeError as error:
+        raise TypeError(f"{name} must be two numbers, got {value!r}") from error
+    except ValueError as error:
+        raise ValueError(f"{name} must be two numbers, got {value!r}") from error
+    return Vec2d(number(f"{name}[0]", x), number(f"{name}[1]", y))
+
+
+def semi_axes(a: Any, b: Any) -> tuple[float, float]:
+    """a and b as lengths that an ellipse can have."""
+    result = number("a", a), number("b", b)
+    for name, length in zip("ab", result):
+        if length <= 0.0:
+            raise ValueError(f"{name} must be positive, got {length!r}")
+        if not SMALLEST_SEMI_AXIS <= length <= LARGEST_SEMI_AXIS:
+            raise ValueError(
+                f"{name} must lie between {SMALLEST_SEMI_AXIS} and {LARGEST_SEMI_AXIS}, got {length!r}"
+            )
+    if max(result) > LARGEST_ASPECT_RATIO * min(result):
+        raise ValueError(
+            f"a and b must not differ by more than a factor of {LARGEST_ASPECT_RATIO:.0e}, "
+            f"got a={result[0]!r} and b={result[1]!r}"
+        )
+    return result

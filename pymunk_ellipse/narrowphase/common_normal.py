@@ -1,0 +1,210 @@
+"""The fit itself: turn a normal until one circle fits each ellipse there, and prove that no other normal does better.
+
+All of it happens in the frame of the first ellipse. A pair is the tuple
+
+    (a1, b1, a2, b2, c, s, dx, dy)
+
+with the first ellipse's centre at the origin and its semi-axis a1 along x, the second one's
+centre at (dx, dy) and its semi-axis a2 along the unit vector (c, s). A circle is an ellipse
+with equal semi-axes, a point is one without size.
+
+For a unit vector n that points from the first to the second, let
+
+    f(n) = n . d - h1(n) - h2(n)
+
+with h the support functions. The largest f over all n is the distance between the two, and
+minus their penetration depth when they overlap; the n it belongs to is the contact normal.
+
+Scalars go in and come out: the same functions run as they are, and compiled by numba.
+"""
+
+from __future__ import annotations
+
+from math import acos, atan2, cos, pi, sin, sqrt
+
+Pair = tuple[float, float, float, float, float, float, float, float]
+Cone = tuple[float, float, float, float]
+
+# The fit ends when the next turn of the normal is smaller (radians); the depth is then off by about its square.
+TURN_TOLERANCE = 1e-8
+
+# A larger turn is cut to this (radians, nearly): Newton's step does not see past a sharp end.
+MAX_TURN = 0.5
+
+# No other normal gives a depth that is smaller by more than this part of the smallest semi-axis.
+DEPTH_TOLERANCE = 5e-7
+
+# A step must gain this part of what the slope promised (Armijo's rule), or steps across a sharp peak could go on.
+SUFFICIENT_RISE = 0.1
+
+# Roundoff of f and f', as a part of the lengths that enter them.
+ROUNDOFF = 1e-15
+
+# Bounds on the loops, far above what the climb (30) and the sweep (60) were seen to take at aspect ratio 1000.
+MAX_TURNS = 100
+MAX_JUMPS = 300
+
+# Keeps a point, whose support function is zero, from dividing by it. Lengths that matter are above 1e-50.
+TINY = 1e-290
+
+ALL_ROUND: Cone = (0.0, 0.0, 0.0, 0.0)
+
+
+def fitted_circles(
+    pair: Pair, nx: float, ny: float
+) -> tuple[float, float, float, float, float]:
+    """Fit a circle to the first ellipse where its normal is n and to the second where it is -n.
+
+    Returns f, its derivative f' along the counterclockwise turn of n, the distance along n
+    between the centres of the two circles, and the first ellipse's support point (x, y).
+
+    Support point and radius of curvature of an ellipse in the direction u are
+    (a^2 ux, b^2 uy)/h and a^2 b^2/h^3, with h = sqrt(a^2 ux^2 + b^2 uy^2).
+    """
+    a1, b1, a2, b2, c, s, dx, dy = pair
+
+    ax1 = a1 * nx
+    by1 = b1 * ny
+    inverse1 = 1.0 / (sqrt(ax1 * ax1 + by1 * by1) + TINY)
+    p1x = a1 * ax1 * inverse1
+    p1y = b1 * by1 * inverse1
+    mean1 = a1 * b1 * inverse1
+    radius1 = mean1 * mean1 * inverse1
+
+    ax2 = a2 * (c * nx + s * ny)
+    by2 = b2 * (c * ny - s * nx)
+    inverse2 = 1.0 / (sqrt(ax2 * ax2 + by2 * by2) + TINY)
+    p2x = a2 * ax2 * inverse2
+    p2y = b2 * by2 * inverse2
+    mean2 = a2 * b2 * inverse2
+    radius2 = mean2 * mean2 * inverse2
+
+    # From the first ellipse's support point to the second's.
+    qx = dx - p1x - (c * p2x - s * p2y)
+    qy = dy - p1y - (s * p2x + c * p2y)
+    f = qx * nx + qy * ny
+    slope = qy * nx - qx * ny
+    return f, slope, f + radius1 + radius2, p1x, p1y
+
+
+def first_guess(pair: Pair) -> tuple[float, float]:
+    """A normal to start from: at d, that of the ellipse with the squared support function h1^2 + h2^2."""
+    a1, b1, a2, b2, c, s, dx, dy = pair
+    xx = a1 * a1 + a2 * a2 * c * c + b2 * b2 * s * s
+    yy = b1 * b1 + a2 * a2 * s * s + b2 * b2 * c * c
+    xy = (a2 * a2 - b2 * b2) * c * s
+    nx = yy * dx - xy * dy
+    ny = xx * dy - xy * dx
+    length = sqrt(nx * nx + ny * ny)
+    if not length > TINY:
+        return 0.0, 1.0
+    return nx / length, ny / length
+
+
+def sharpest(pair: Pair) -> float:
+    """The smallest radius of curvature that the Minkowski sum of the two ellipses can have."""
+    a1, b1, a2, b2, _c, _s, _dx, _dy = pair
+    radius = b1 / a1 * b1
+    if a2 > 0.0:
+        radius += b2 / a2 * b2
+    return radius
+
+
+def climb(
+    pair: Pair, nx: float, ny: float, cone: Cone, margin: float
+) -> tuple[float, float, float, float, float, int]:
+    """Turn n uphill to a maximum of f within the cone.
+
+    The cone's four numbers are the unit vectors (x, y) where it begins and, counterclockwise,
+    ends; ALL_ROUND has no limits. Newton's step for f' = 0 turns n to the line that joins the
+    centres of the two fitted circles; a step that leaves the cone or gains too little is halved.
+    Once f exceeds margin the two are known to be that far apart, and the climb ends.
+
+    Returns f, n (x, y), the first ellipse's support point (x, y) and the number of evaluations.
+    """
+    a1, _b1, a2, _b2, _c, _s, dx, dy = pair
+    first_x, first_y, last_x, last_y = cone
+    noise = ROUNDOFF * (a1 + a2 + abs(dx) + abs(dy))
+    f, slope, between, px, py = fitted_circles(pair, nx, ny)
+    evaluations = 1
+    for _ in range(MAX_TURNS):
+        if f > margin:
+            break
+        if between > 0.0:
+            if abs(slope) <= noise:
+                break
+            turn = slope / between
+            if turn > MAX_TURN:
+                turn = MAX_TURN
+            elif turn < -MAX_TURN:
+                turn = -MAX_TURN
+        else:
+            # Near a minimum of f Newton's step leads downhill.
+            turn = MAX_TURN if slope >= 0.0 else -MAX_TURN
+
+        enough = SUFFICIENT_RISE * slope
+        uphill = False
+        while abs(turn) > TURN_TOLERANCE:
+            scale = 1.0 / sqrt(1.0 + turn * turn)
+            mx = (nx - turn * ny) * scale
+            my = (ny + turn * nx) * scale
+            if first_x * my >= first_y * mx and mx * last_y >= my * last_x:
+                g, slope, between, qx, qy = fitted_circles(pair, mx, my)
+                evaluations += 1
+                if g >= f + enough * turn - noise:
+                    uphill = True
+                    break
+            turn *= 0.5
+        if not uphill:
+            break
+        f, nx, ny, px, py = g, mx, my, qx, qy
+    return f, nx, ny, px, py, evaluations
+
+
+def sweep(
+    pair: Pair,
+    nx: float,
+    ny: float,
+    extent: float,
+    cone: Cone,
+    best: float,
+    best_x: float,
+    best_y: float,
+    margin: float,
+) -> tuple[float, float, float, int]:
+    """Prove that f exceeds best nowhere on the arc of the given extent, counterclockwise from n.
+
+    Where it does, climb within the cone and go on with the better maximum, unless that is
+    above margin already. A disc as small as
+    the sharpest ends, of radius r, rolls freely inside the Minkowski sum of the two (Blaschke's
+    rolling theorem); from its position at n,
+
+        f(n turned by phi) <= (f + r) cos phi + f' sin phi - r
+
+    so one jump passes every n for which the right side stays below best.
+
+    Returns the largest f, its n (x, y) and the number of evaluations.
+    """
+    _a1, b1, _a2, b2, _c, _s, _dx, _dy = pair
+    r = sharpest(pair)
+    slack = DEPTH_TOLERANCE * (b2 if 0.0 < b2 < b1 else b1)
+    evaluations = 0
+    swept = 0.0
+    for _ in range(MAX_JUMPS):
+        f, slope, _between, _px, _py = fitted_circles(pair, nx, ny)
+        evaluations += 1
+        if f > best:
+            best, best_x, best_y, _px, _py, climbed = climb(pair, nx, ny, cone, margin)
+            evaluations += climbed
+        ceiling = best + slack + r
+        reach = sqrt((f + r) * (f + r) + slope * slope)
+        if best > margin or ceiling >= reach:
+            break
+        jump = (atan2(slope, f + r) - acos(ceiling / reach)) % (2.0 * pi)
+        swept += jump
+        if swept >= extent:
+            break
+        turned_x = nx * cos(jump) - ny * sin(jump)
+        ny = ny * cos(jump) + nx * sin(jump)
+        nx = turned_x
+    return best, best_x, best_y, evaluations

@@ -1,7 +1,8 @@
 """Exact ellipses for pymunk."""
 
 from .circle_fit import circle_fit
+from .backend import backend
 from .ellipse import Ellipse
 from .mass import area_for_ellipse, moment_for_ellipse
 
-__all__ = ["Ellipse", "area_for_ellipse", "circle_fit", "moment_for_ellipse"]
+__all__ = ["Ellipse", "area_for_ellipse", "backend", "circle_fit", "moment_for_ellipse"]

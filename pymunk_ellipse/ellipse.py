@@ -10,7 +10,9 @@ import pymunk
 from pymunk import ContactPoint, ContactPointSet, Vec2d
 
 from . import _checks, contacts
-from ._pymunk import IDENTITY, NO_SPACE, Transform, body_transform
+from ._layout import write_frame
+from ._pymunk import NO_SPACE
+from .geometry import IDENTITY, Transform, body_transform
 from .hull import hull
 from .narrowphase.placement import Frame, placed
 from .resolver import contact_with_ellipse, contact_with_shape
@@ -37,6 +39,9 @@ class Ellipse(pymunk.Poly):
     >>> round(body.mass, 3), round(body.moment, 1)
     (6.283, 785.4)
     """
+
+    # Where an ellipse without a body is.
+    _updated: Transform = IDENTITY
 
     _pickle_attrs_init = pymunk.Shape._pickle_attrs_init + ["a", "b", "offset", "angle"]
 
@@ -65,6 +70,7 @@ class Ellipse(pymunk.Poly):
         # changes, and those of the vertices are the ellipse's.
         super().__init__(body, vertices)
         super().unsafe_set_radius(radius)
+        write_frame(self._shape, self._frame)
 
     def _set_frame(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._a, self._b = _checks.semi_axes(a, b)
@@ -138,6 +144,7 @@ class Ellipse(pymunk.Poly):
         vertices, radius = hull(self._a, self._b, self._angle, *self._offset)
         super().unsafe_set_vertices(vertices)
         super().unsafe_set_radius(radius)
+        write_frame(self._shape, self._frame)
         if self.space is not None:
             contacts.enter(self.space, self._shape, self._frame)
 
@@ -165,7 +172,7 @@ class Ellipse(pymunk.Poly):
             raise ValueError(
                 f"transform must be a rotation and a translation, got {transform}"
             )
-        self._updated: Transform = (
+        self._updated = (
             transform.tx,
             transform.ty,
             transform.a,
@@ -213,7 +220,8 @@ class Ellipse(pymunk.Poly):
     # pymunk tells a shape that it enters or leaves a space by setting this.
     @property
     def _space(self) -> weakref.ref[pymunk.Space]:
-        return self.__dict__.get("_in_space", NO_SPACE)
+        reference: weakref.ref[pymunk.Space] = self.__dict__.get("_in_space", NO_SPACE)
+        return reference
 
     @_space.setter
     def _space(self, reference: weakref.ref[pymunk.Space]) -> None:
@@ -224,8 +232,6 @@ class Ellipse(pymunk.Poly):
         new = reference()
         if new is not None:
             contacts.enter(new, self._shape, self._frame)
-
-    _updated = IDENTITY
 
     def __getstate__(self) -> dict[str, list[tuple[str, Any]]]:
         """The state to copy and pickle: the constructor's arguments and the attributes of every shape."""

@@ -6,18 +6,13 @@ from typing import Any
 
 from pymunk import Circle, Segment, Shape
 
-from ._pymunk import (
-    FIRST_COLLISION,
-    IGNORE,
-    NULL,
+from ._pymunk import FIRST_COLLISION, IGNORE, NULL, address, contact_at, shape_at
+from .geometry import (
     Transform,
-    address,
     center_of_gravity,
     circle_in_world,
-    contact_at,
     polygon_in_world,
     segment_in_world,
-    shape_at,
     spin,
     surface_velocity,
     transform_of,
@@ -72,8 +67,6 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     cp_b = arbiter.b
     frame_a = ellipses.get(cp_a)
     frame_b = ellipses.get(cp_b)
-    if frame_a is None and frame_b is None:
-        return
 
     body_a = arbiter.body_a
     body_b = arbiter.body_b
@@ -104,23 +97,27 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     start_x = start_y = 0.0
     if frame_a is not None:
         ellipse = placed(frame_a, *transform_a)
+        round_shapes = ellipse[0] == ellipse[1]
         if last is not None:
             start_x, start_y = normal_at(ellipse, ax + last_ax, ay + last_ay)
         if frame_b is not None:
-            contact = contact_with_ellipse(
-                ellipse, placed(frame_b, *transform_b), start_x, start_y, 0.0
-            )
+            other = placed(frame_b, *transform_b)
+            round_shapes = round_shapes and other[0] == other[1]
+            contact = contact_with_ellipse(ellipse, other, start_x, start_y, 0.0)
         else:
             contact = contact_with_shape(
                 ellipse, shape_at(cp_b), transform_b, start_x, start_y, 0.0
             )
-    else:
+    elif frame_b is not None:
         ellipse = placed(frame_b, *transform_b)
+        round_shapes = ellipse[0] == ellipse[1]
         if last is not None:
             start_x, start_y = normal_at(ellipse, bx + last_bx, by + last_by)
         contact = contact_with_shape(
             ellipse, shape_at(cp_a), transform_a, start_x, start_y, 0.0
         )
+    else:
+        return
     distance, nx, ny, px, py, _evaluations = contact
 
     if distance > 0.0:
@@ -128,7 +125,13 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
         arbiter.data = NULL
         return
 
-    rolls = last is not None and same_contact(nx, ny, start_x, start_y)
+    # A circle's contact stays where it is; without this it would differ from pymunk.Circle's in
+    # what little it moves at a corner.
+    rolls = (
+        last is not None
+        and not round_shapes
+        and same_contact(nx, ny, start_x, start_y)
+    )
     x = ellipse[4] + px
     y = ellipse[5] + py
     other_x = x + distance * nx

@@ -1,0 +1,100 @@
+"""Shapes as plain numbers, and the package's narrow phase on them."""
+
+from math import cos, hypot, inf, pi, sin
+from typing import NamedTuple
+
+from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
+from pymunk_ellipse.narrowphase.ellipse_polygon import ellipse_polygon, ellipse_segment
+
+
+class Placed(NamedTuple):
+    """An ellipse: semi-axes, centre and the angle of a."""
+
+    a: float
+    b: float
+    x: float = 0.0
+    y: float = 0.0
+    angle: float = 0.0
+
+
+class Round(NamedTuple):
+    """A circle, segment or convex polygon: one, two or more vertices, counterclockwise, and a radius."""
+
+    vertices: tuple[tuple[float, float], ...]
+    radius: float = 0.0
+
+
+class Found(NamedTuple):
+    """A contact: distance, unit normal from the ellipse, point on the ellipse, evaluations."""
+
+    distance: float
+    nx: float
+    ny: float
+    x: float
+    y: float
+    evaluations: int
+
+
+def frame(ellipse):
+    """Semi-axes, the longer first, and the unit vector along it."""
+    a, b, _x, _y, angle = ellipse
+    if a < b:
+        a, b, angle = b, a, angle + pi / 2
+    return a, b, cos(angle), sin(angle)
+
+
+def splitting_planes(vertices):
+    """Four numbers for each vertex: where it is, and the outward normal of the face that ends there."""
+    planes = []
+    for i, (x, y) in enumerate(vertices):
+        ex, ey = x - vertices[i - 1][0], y - vertices[i - 1][1]
+        length = hypot(ex, ey) or 1.0
+        planes += (x, y, ey / length, -ex / length)
+    return planes
+
+
+def contact(ellipse, other, start=(0.0, 0.0), margin=inf):
+    """The contact of an ellipse with another shape, by the narrow phase."""
+    if isinstance(other, Placed):
+        dx, dy = other.x - ellipse.x, other.y - ellipse.y
+        numbers = ellipse_ellipse(
+            *frame(ellipse), *frame(other), dx, dy, *start, margin
+        )
+    elif len(other.vertices) == 1:
+        ((x, y),) = other.vertices
+        round_frame = (other.radius, other.radius, 1.0, 0.0)
+        dx, dy = x - ellipse.x, y - ellipse.y
+        numbers = ellipse_ellipse(*frame(ellipse), *round_frame, dx, dy, *start, margin)
+    elif len(other.vertices) == 2:
+        first, second = other.vertices
+        alone = (0.0, 0.0, 0.0, 0.0)
+        at = (*frame(ellipse), ellipse.x, ellipse.y)
+        numbers = ellipse_segment(*at, *first, *second, *alone, other.radius, margin)
+    else:
+        planes, count = splitting_planes(other.vertices), len(other.vertices)
+        at = (*frame(ellipse), ellipse.x, ellipse.y)
+        numbers = ellipse_polygon(*at, planes, count, other.radius, margin)[:6]
+    return Found(*numbers)
+
+
+def from_reference(case):
+    """The two shapes of a case in contacts.json."""
+    ellipse = Placed(*(case["ellipse"][key] for key in ("a", "b", "x", "y", "angle")))
+    other = case["other"]
+    if case["kind"] == "ellipse":
+        return ellipse, Placed(*(other[key] for key in ("a", "b", "x", "y", "angle")))
+    if case["kind"] == "circle":
+        return ellipse, Round(((other["x"], other["y"]),), other["r"])
+    vertices = tuple(tuple(vertex) for vertex in other["vertices"])
+    return ellipse, Round(counterclockwise(vertices), other["r"])
+
+
+def counterclockwise(vertices):
+    """The vertices of a convex polygon in that order."""
+    area = sum(
+        x0 * y1 - x1 * y0
+        for (x0, y0), (x1, y1) in zip(
+            vertices, vertices[1:] + vertices[:1], strict=True
+        )
+    )
+    return vertices if area >= 0 else vertices[::-1]

@@ -1,0 +1,131 @@
+"""The hull contains its ellipse, weighs what the ellipse weighs, and touches whatever the ellipse touches."""
+
+from math import cos, pi, sin
+
+import numpy as np
+import pymunk
+import pytest
+from test_narrowphase import KINDS, random_pair
+
+import pymunk_ellipse.hull
+from pymunk_ellipse import Ellipse
+from pymunk_ellipse.hull import hull
+
+DIRECTIONS = np.linspace(0, 2 * pi, 5000, endpoint=False)
+
+
+def supports(vertices, radius, cosine, sine):
+    corners = np.asarray(vertices)
+    return np.max(corners @ np.array([cosine, sine]), axis=0) + radius
+
+
+@pytest.mark.parametrize("count", [4, 5, 6, 7, 8, 9, 12, 16, 32])
+@pytest.mark.parametrize("aspect", [1.0, 1.5, 3.0, 10.0, 100.0, 1e4])
+def test_contains_the_ellipse(aspect, count):
+    for a, b in ((aspect, 1.0), (1.0, aspect), (1e-3 * aspect, 1e-3)):
+        vertices, radius = hull(a, b, 0.0, 0.0, 0.0, count)
+        assert len(vertices) == count
+        assert radius > 0
+        # Directions evenly spaced, and the normals at points evenly spaced on the ellipse.
+        for u, v in (
+            (np.cos(DIRECTIONS), np.sin(DIRECTIONS)),
+            (b * np.cos(DIRECTIONS), a * np.sin(DIRECTIONS)),
+        ):
+            length = np.hypot(u, v)
+            cosine, sine = u / length, v / length
+            ellipse = np.hypot(a * cosine, b * sine)
+            assert np.all(supports(vertices, radius, cosine, sine) >= ellipse)
+
+
+@pytest.mark.parametrize("count", [8, 12, 16])
+@pytest.mark.parametrize("aspect", [1.0, 2.0, 5.0])
+def test_is_not_much_larger(aspect, count):
+    vertices, radius = hull(aspect, 1.0, 0.0, 0.0, 0.0, count)
+    cosine, sine = np.cos(DIRECTIONS), np.sin(DIRECTIONS)
+    ellipse = np.hypot(aspect * cosine, sine)
+    excess = supports(vertices, radius, cosine, sine) - ellipse
+    assert excess.max() < 0.3 * aspect * (8 / count) ** 2
+
+
+def test_position_and_angle():
+    angle, x, y = 0.7, 3.0, -4.0
+    vertices, radius = hull(3.0, 1.0, 0.0, 0.0, 0.0)
+    placed, same = hull(3.0, 1.0, angle, x, y)
+    assert same == pytest.approx(radius)
+    for (u, v), found in zip(vertices, placed, strict=True):
+        turned = (
+            cos(angle) * u - sin(angle) * v + x,
+            sin(angle) * u + cos(angle) * v + y,
+        )
+        assert found == pytest.approx(turned)
+
+
+@pytest.mark.parametrize("count", [4, 5, 8, 12, 32])
+@pytest.mark.parametrize("aspect", [1.0, 2.0, 50.0])
+def test_moment_is_that_of_the_ellipse(aspect, count):
+    vertices, _radius = hull(aspect, 1.0, 0.3, 0.0, 0.0, count)
+    moment = pymunk.moment_for_poly(1.0, vertices)
+    assert moment == pytest.approx((aspect**2 + 1) / 4, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_hull_touches_whatever_the_ellipse_touches(kind):
+    """pymunk's own narrow phase on the hull must report every pair that overlaps, or its contact would be missed."""
+    random = np.random.default_rng(80 + KINDS.index(kind))
+    body = pymunk.Body()
+    overlaps = 0
+    for _ in range(1500):
+        ellipse, other = random_pair(random, kind, 50, deepest=0.5, farthest=0.0)
+        shape = shape_of(body, ellipse)
+        if kind == "ellipse":
+            second = shape_of(body, other)
+        elif kind == "circle":
+            second = pymunk.Circle(body, other.radius, other.vertices[0])
+        elif kind == "segment":
+            second = pymunk.Segment(body, *other.vertices, other.radius)
+        else:
+            second = pymunk.Poly(body, other.vertices, radius=other.radius)
+        if not shape.shapes_collide(second).points:
+            continue
+        overlaps += 1
+        assert hulls_touch(shape, second)
+    assert overlaps > 1000
+
+
+def shape_of(body, placed):
+    a, b, x, y, angle = placed
+    return Ellipse(body, a, b, (x, y), angle)
+
+
+def hulls_touch(first, second):
+    """Whether Chipmunk finds a contact: an arbiter, in a space where pre_solve reports the pair."""
+    space = pymunk.Space()
+    seen = []
+    space.on_collision(
+        pre_solve=lambda arbiter, space, data: seen.append(arbiter.shapes)
+    )
+    bodies = []
+    for shape in (first, second):
+        body = pymunk.Body(1, 1)
+        bodies.append(body)
+        shape.body = body
+    space.add(*bodies, first, second)
+    space.step(1e-9)
+    space.remove(*space.bodies, *space.shapes)
+    return bool(seen)
+
+
+def test_touch_test_notices_a_small_hull(monkeypatch):
+    """The test above would fail if the hull did not contain the ellipse."""
+    large = pymunk_ellipse.hull.hull
+
+    def small(a, b, *place):
+        vertices, _radius = large(0.8 * a, 0.8 * b, *place)
+        return vertices, 0.0
+
+    monkeypatch.setattr("pymunk_ellipse.ellipse.hull", small)
+    first = Ellipse(None, 2, 1)
+    second = Ellipse(None, 2, 1, offset=(3.9, 0))
+    first.body = second.body = pymunk.Body(1, 1)
+    assert first.shapes_collide(second).points
+    assert not hulls_touch(first, second)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from math import isclose
+from math import isclose, pi
 from typing import Any, Optional
 
 import pymunk
@@ -17,8 +17,14 @@ from .narrowphase.placement import Frame
 BODY_CENTER_OF_GRAVITY = 48  # x, y, local
 BODY_POSITION = 64  # x, y, of the centre of gravity in the world
 BODY_SPIN = 120
-BODY_TRANSFORM = 136  # the matrix's columns: cos, sin, -sin, cos, then x, y of the body's origin
+BODY_TRANSFORM = (
+    136  # the matrix's columns: cos, sin, -sin, cos, then x, y of the body's origin
+)
 SHAPE_CLASS = 0  # a pointer to a struct that starts with the kind, an int
+SHAPE_MASS = 24
+SHAPE_MOMENT_PER_MASS = 32
+SHAPE_CENTER_OF_GRAVITY = 40  # x, y, local
+SHAPE_AREA = 56
 SHAPE_SURFACE_VELOCITY = 120  # x, y
 CIRCLE_CENTER = 208  # x, y, in the world
 CIRCLE_RADIUS = 224
@@ -28,7 +34,9 @@ SEGMENT_RADIUS = 288
 SEGMENT_TANGENTS = 296  # x, y at the start, x, y at the end, local
 POLYGON_RADIUS = 192
 POLYGON_COUNT = 200  # an int
-POLYGON_PLANES = 208  # a pointer to vertex x, y and normal x, y in the world; local ones follow
+POLYGON_PLANES = (
+    208  # a pointer to vertex x, y and normal x, y in the world; local ones follow
+)
 POLYGON_INLINE_PLANES = 216  # where the planes are while they are few
 INLINE_VERTICES = 6
 
@@ -37,7 +45,7 @@ CIRCLE, SEGMENT, POLYGON = 0, 1, 2
 # An ellipse's hull has more vertices than fit inline, so that its struct has room for the
 # ellipse's frame: a mark that no other shape can have there, and six doubles.
 ELLIPSE_MARK = POLYGON_INLINE_PLANES
-ELLIPSE_FRAME = POLYGON_INLINE_PLANES + 8
+ELLIPSE_FRAME = ELLIPSE_MARK + 8
 MARK = 0x45_6C_6C_69_70_73_65_21
 
 
@@ -93,6 +101,10 @@ def _unproved_of_body() -> Optional[str]:
 
 
 def _unproved_of_shape(shape: pymunk.Shape, kind: int) -> Optional[str]:
+    shape.mass = 1.75
+    mass = shape.mass, shape.moment / shape.mass, *shape.center_of_gravity, shape.area
+    if _mismatch(shape._shape, SHAPE_MASS, mass):
+        return "a shape's mass, moment, center of gravity and area"
     shape.surface_velocity = 3.25, -4.75
     if _mismatch(shape._shape, SHAPE_SURFACE_VELOCITY, (3.25, -4.75)):
         return "a shape's surface velocity"
@@ -132,7 +144,14 @@ def _unproved_of_segment() -> Optional[str]:
 
 
 def _unproved_of_polygon() -> Optional[str]:
-    corners = [(8.0, 1.0), (6.0, 6.5), (1.0, 8.5), (-5.5, 6.0), (-7.5, -3.0), (2.5, -9.5)]
+    corners = [
+        (8.0, 1.0),
+        (6.0, 6.5),
+        (1.0, 8.5),
+        (-5.5, 6.0),
+        (-7.5, -3.0),
+        (2.5, -9.5),
+    ]
     for count in (INLINE_VERTICES, 3):
         polygon = pymunk.Poly(None, corners[:count], radius=7.25)
         problem = _unproved_of_shape(polygon, POLYGON)
@@ -164,14 +183,21 @@ def _unproved_of_polygon() -> Optional[str]:
     return None
 
 
-def write_frame(cp_shape: Any, frame: Frame) -> None:
-    """Mark a hull as an ellipse's and leave the ellipse's frame in it, if the structs are as known."""
-    if unproved() is None:
-        fields = _at(cp_shape, ELLIPSE_FRAME, "double")
-        for i, number in enumerate(frame):
-            fields[i] = number
-        mark = _at(cp_shape, ELLIPSE_MARK, "uint64_t")
-        mark[0] = MARK ^ address(cp_shape)
+def write_ellipse(cp_shape: Any, frame: Frame) -> None:
+    """Make a hull the ellipse's own, where the structs are as known: mark it, with the frame, and set mass properties.
+
+    Those are the moment of inertia per mass, the centre of gravity and the area, which pymunk
+    has taken from the hull.
+    """
+    a, b, _c, _s, x, y = frame
+    mass_info = _at(cp_shape, SHAPE_MOMENT_PER_MASS, "double")
+    for i, number in enumerate(((a * a + b * b) / 4.0, x, y, pi * a * b)):
+        mass_info[i] = number
+    fields = _at(cp_shape, ELLIPSE_FRAME, "double")
+    for i, number in enumerate(frame):
+        fields[i] = number
+    mark = _at(cp_shape, ELLIPSE_MARK, "uint64_t")
+    mark[0] = MARK ^ address(cp_shape)
 
 
 def neighbor_tangents(cp_shape: Any) -> tuple[float, float, float, float]:

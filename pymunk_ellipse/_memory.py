@@ -48,11 +48,12 @@ store_int = _storer(_INT32, types.int64, "store_int")
 store_word = _storer(_INT64, types.int64, "store_word")
 
 
-@intrinsic
-def doubles_at(typing_context: Any, address: Any) -> Any:
-    """A pointer to doubles, for numba.carray."""
-
+def _doubles_at(typing_context: Any, address: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], _DOUBLE.as_pointer())
 
     return types.CPointer(types.float64)(types.int64), generate
+
+
+# A pointer to doubles, for numba.carray.
+doubles_at: Any = intrinsic(_doubles_at)

@@ -92,9 +92,7 @@ class ContactHandler(CollisionHandler):
         return self._pre_solve
 
     @pre_solve.setter
-    def pre_solve(
-        self, func: Optional[Callable[[Arbiter, Space, Any], None]]
-    ) -> None:
+    def pre_solve(self, func: Optional[Callable[[Arbiter, Space, Any], None]]) -> None:
         self._pre_solve = func
         if func is None and self.compiled is not None:
             self._handler.preSolveFunc = self.compiled

@@ -293,9 +293,7 @@ def _define(version: int) -> Any:
                 round_shapes = round_shapes and other[0] == other[1]
                 contact = contact_with_ellipse(ellipse, other, start_x, start_y)
             else:
-                contact = contact_with_shape(
-                    ellipse, shape_b, body_b, start_x, start_y
-                )
+                contact = contact_with_shape(ellipse, shape_b, body_b, start_x, start_y)
         else:
             ellipse = place_ellipse(shape_b, body_b)
             round_shapes = ellipse[0] == ellipse[1]
@@ -310,9 +308,7 @@ def _define(version: int) -> Any:
             return
 
         rolls = (
-            last != 0
-            and not round_shapes
-            and same_contact(nx, ny, start_x, start_y)
+            last != 0 and not round_shapes and same_contact(nx, ny, start_x, start_y)
         )
         x = ellipse[4] + px
         y = ellipse[5] + py
@@ -374,7 +370,7 @@ def _version() -> int:
     return int.from_bytes(digest.digest()[:7], "big") + 1
 
 
-class _Announcement(Listener):  # type: ignore[misc]
+class _Announcement(Listener):
     """Logs that a compilation begins, once."""
 
     def __init__(self) -> None:

@@ -10,10 +10,10 @@ import pymunk
 from pymunk import ContactPoint, ContactPointSet, Vec2d
 
 from . import _checks, contacts
-from ._layout import write_frame
+from ._layout import unproved, write_ellipse
 from ._pymunk import NO_SPACE
 from .geometry import IDENTITY, Transform, body_transform
-from .hull import hull
+from .hull import Hull, hull_with_moment, rounded_hull
 from .narrowphase.placement import Frame, placed
 from .resolver import contact_with_ellipse, contact_with_shape
 
@@ -65,12 +65,20 @@ class Ellipse(pymunk.Poly):
         1e50 or with a ratio beyond 1e6.
         """
         self._set_frame(a, b, offset, angle)
-        vertices, radius = hull(self._a, self._b, self._angle, *self._offset)
-        # Chipmunk takes mass properties from vertices and radius now, not when the radius
-        # changes, and those of the vertices are the ellipse's.
+        vertices, radius = self._hull()
+        # Chipmunk takes mass properties from vertices and radius now, and does not when the
+        # radius changes: those of the vertices alone stay.
         super().__init__(body, vertices)
         super().unsafe_set_radius(radius)
-        write_frame(self._shape, self._frame)
+        self._write()
+
+    def _hull(self) -> Hull:
+        make = rounded_hull if unproved() is None else hull_with_moment
+        return make(self._a, self._b, self._angle, *self._offset)
+
+    def _write(self) -> None:
+        if unproved() is None:
+            write_ellipse(self._shape, self._frame)
 
     def _set_frame(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._a, self._b = _checks.semi_axes(a, b)
@@ -141,10 +149,12 @@ class Ellipse(pymunk.Poly):
 
     def _reshape(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._set_frame(a, b, offset, angle)
-        vertices, radius = hull(self._a, self._b, self._angle, *self._offset)
+        vertices, radius = self._hull()
         super().unsafe_set_vertices(vertices)
         super().unsafe_set_radius(radius)
-        write_frame(self._shape, self._frame)
+        self._write()
+        # Once more, for the body to take over the new moment.
+        self.mass = self.mass
         if self.space is not None:
             contacts.enter(self.space, self._shape, self._frame)
 

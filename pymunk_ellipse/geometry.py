@@ -37,9 +37,7 @@ def center_of_gravity(cp_body: Any, transform: Transform) -> tuple[float, float]
     return x + cos * local_x - sin * local_y, y + sin * local_x + cos * local_y
 
 
-def circle_in_world(
-    cp_shape: Any, transform: Transform
-) -> tuple[float, float, float]:
+def circle_in_world(cp_shape: Any, transform: Transform) -> tuple[float, float, float]:
     """Center (x, y) and radius of a circle."""
     x, y, cos, sin = transform
     offset = lib.cpCircleShapeGetOffset(cp_shape)
@@ -51,9 +49,7 @@ def circle_in_world(
 
 def segment_in_world(
     cp_shape: Any, transform: Transform
-) -> tuple[
-    tuple[float, float, float, float], tuple[float, float, float, float], float
-]:
+) -> tuple[tuple[float, float, float, float], tuple[float, float, float, float], float]:
     """Both ends of a segment, the tangents there that lead to its neighbours, and its radius."""
     x, y, cos, sin = transform
     start = lib.cpSegmentShapeGetA(cp_shape)

@@ -128,9 +128,7 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     # A circle's contact stays where it is; without this it would differ from pymunk.Circle's in
     # what little it moves at a corner.
     rolls = (
-        last is not None
-        and not round_shapes
-        and same_contact(nx, ny, start_x, start_y)
+        last is not None and not round_shapes and same_contact(nx, ny, start_x, start_y)
     )
     x = ellipse[4] + px
     y = ellipse[5] + py

@@ -105,7 +105,7 @@ def ellipse_polygon(
             evaluations += swept
             if g > best:
                 best, nx, ny, feature = g, ux, uy, i
-                _f, _slope, _between, px, py = fitted_circles(pair, nx, ny)
+                _f, _slope, _between, nx, ny, px, py = fitted_circles(pair, nx, ny)
 
     return (
         best,

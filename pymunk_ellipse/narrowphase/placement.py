@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
 # Semi-axes (the longer first), the unit vector along the longer one (x, y) and the centre (x, y).
 Frame = tuple[float, float, float, float, float, float]
 
 
-def placed(
-    frame: Frame, x: float, y: float, cos: float, sin: float
-) -> Frame:
+def placed(frame: Frame, x: float, y: float, cos: float, sin: float) -> Frame:
     """The frame in the world of an ellipse on a body at (x, y) with the rotation vector (cos, sin)."""
     a, b, c, s, ox, oy = frame
     return (
@@ -24,16 +20,11 @@ def placed(
 
 
 def normal_at(frame: Frame, px: float, py: float) -> tuple[float, float]:
-    """The outward normal of an ellipse at a point on or near it; zero at the centre."""
+    """The outward normal, of any length, of an ellipse at a point on or near it; zero at the centre."""
     a, b, c, s, x, y = frame
-    dx = (px - x) / a
-    dy = (py - y) / a
-    flattening = a / b
+    dx = px - x
+    dy = py - y
+    flattening = (a / b) * (a / b)
     u = c * dx + s * dy
-    v = (c * dy - s * dx) * flattening * flattening
-    length = sqrt(u * u + v * v)
-    if length == 0.0:
-        return 0.0, 0.0
-    u /= length
-    v /= length
+    v = (c * dy - s * dx) * flattening
     return c * u - s * v, s * u + c * v

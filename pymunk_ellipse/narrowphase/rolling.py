@@ -30,5 +30,7 @@ def rolling_velocity(
 
 
 def same_contact(nx: float, ny: float, last_x: float, last_y: float) -> bool:
-    """Whether a contact that had one normal (unit vectors) can have rolled to the other in a step, or jumped."""
-    return nx * last_x + ny * last_y > 0.9
+    """Whether a contact can have rolled from one normal, of any length, to the unit vector (nx, ny), or has jumped."""
+    along = nx * last_x + ny * last_y
+    across = nx * last_y - ny * last_x
+    return along > 2.0 * abs(across)

@@ -86,7 +86,7 @@ def draw(raced: dict[float, Times]) -> Figure:
     times_axes.legend()
 
     a, b = semi_axes(2.0)
-    shown = VERTICES[0], DEFAULT_VERTICES, VERTICES[-1]
+    shown = *VERTICES[:2], VERTICES[-1]
     for row, vertices in enumerate(shown):
         y = -2.6 * b * row
         corners, radius = hull(a, b, 0.0, 0.0, y, vertices)

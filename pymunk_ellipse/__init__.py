@@ -1,7 +1,7 @@
 """Exact ellipses for pymunk."""
 
-from .circle_fit import circle_fit
 from .backend import backend
+from .circle_fit import circle_fit
 from .ellipse import Ellipse
 from .mass import area_for_ellipse, moment_for_ellipse
 

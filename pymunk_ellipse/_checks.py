@@ -44,7 +44,7 @@ def point(name: str, value: Any) -> Vec2d:
 def semi_axes(a: Any, b: Any) -> tuple[float, float]:
     """a and b as lengths that an ellipse can have."""
     result = number("a", a), number("b", b)
-    for name, length in zip("ab", result):
+    for name, length in zip("ab", result, strict=True):
         if length <= 0.0:
             raise ValueError(f"{name} must be positive, got {length!r}")
         if not SMALLEST_SEMI_AXIS <= length <= LARGEST_SEMI_AXIS:

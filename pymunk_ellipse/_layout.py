@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import isclose, pi
-from typing import Any, Optional
+from typing import Any
 
 import pymunk
 from pymunk import Transform
@@ -61,7 +61,7 @@ def _mismatch(pointer: Any, offset: int, expected: tuple[float, ...]) -> bool:
 
 
 @cache
-def unproved() -> Optional[str]:
+def unproved() -> str | None:
     """What was not found where this file says, or None if everything was.
 
     Numbers are compared in the order in which they lie in memory, each struct up to the first
@@ -80,7 +80,7 @@ def unproved() -> Optional[str]:
 _TRANSFORM = Transform(0.6, 0.8, -0.8, 0.6, 31.5, 47.25)
 
 
-def _unproved_of_body() -> Optional[str]:
+def _unproved_of_body() -> str | None:
     body = pymunk.Body(2.0, 3.0)
     body.center_of_gravity = 1.5, 2.5
     body.angle = 0.5
@@ -100,7 +100,7 @@ def _unproved_of_body() -> Optional[str]:
     return None
 
 
-def _unproved_of_shape(shape: pymunk.Shape, kind: int) -> Optional[str]:
+def _unproved_of_shape(shape: pymunk.Shape, kind: int) -> str | None:
     shape.mass = 1.75
     mass = shape.mass, shape.moment / shape.mass, *shape.center_of_gravity, shape.area
     if _mismatch(shape._shape, SHAPE_MASS, mass):
@@ -114,7 +114,7 @@ def _unproved_of_shape(shape: pymunk.Shape, kind: int) -> Optional[str]:
     return None
 
 
-def _unproved_of_circle() -> Optional[str]:
+def _unproved_of_circle() -> str | None:
     circle = pymunk.Circle(None, 5.5, (1.5, 2.5))
     center = _TRANSFORM @ circle.offset
     problem = _unproved_of_shape(circle, CIRCLE)
@@ -125,7 +125,7 @@ def _unproved_of_circle() -> Optional[str]:
     return None
 
 
-def _unproved_of_segment() -> Optional[str]:
+def _unproved_of_segment() -> str | None:
     segment = pymunk.Segment(None, (1.5, 2.5), (4.5, 6.5), 7.25)
     segment.set_neighbors((11.5, 13.5), (17.5, 19.5))
     start = _TRANSFORM @ segment.a
@@ -143,7 +143,7 @@ def _unproved_of_segment() -> Optional[str]:
     return None
 
 
-def _unproved_of_polygon() -> Optional[str]:
+def _unproved_of_polygon() -> str | None:
     corners = [
         (8.0, 1.0),
         (6.0, 6.5),

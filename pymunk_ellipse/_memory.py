@@ -49,10 +49,12 @@ store_word = _storer(_INT64, types.int64, "store_word")
 
 
 def _doubles_at(typing_context: Any, address: Any) -> Any:
+    signature: Any = types.CPointer(types.float64)(types.int64)  # type: ignore[no-untyped-call]
+
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], _DOUBLE.as_pointer())
 
-    return types.CPointer(types.float64)(types.int64), generate
+    return signature, generate
 
 
 # A pointer to doubles, for numba.carray.

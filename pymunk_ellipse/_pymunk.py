@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional, Protocol
+import weakref
+from collections.abc import Callable
+from typing import Any, Protocol
 
 from pymunk import Arbiter, Shape, Space
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk._collision_handler import CollisionHandler
 from pymunk._util import _dead_ref
+from pymunk.arbiter import _contact_to_dict
 
 from .narrowphase.placement import Frame
 
@@ -74,30 +77,100 @@ class ContactHandler(CollisionHandler):
         handler: Any,
         space: Space,
         resolve: Callable[[dict[Any, Frame], Any], None],
-        compiled: Optional[Any],
+        compiled: Any | None,
     ) -> None:
         super().__init__(handler, space)
         self.frames: dict[Any, Frame] = {}
         self.resolve = resolve
         self.compiled = compiled
+        # Until the first contact of the space, which may be a copy of one at work.
+        self.adopts = True
         self._data["pre_solve"] = None
+        self._data[SavedContacts] = SavedContacts(space)
         self._dispatcher = _Dispatcher(self)
         self._dispatcher_handle = ffi.new_handle(self._dispatcher)
         handler.userData = self._dispatcher_handle
         self.pre_solve = None
 
     @property
-    def pre_solve(self) -> Optional[Callable[[Arbiter, Space, Any], None]]:
+    def pre_solve(self) -> Callable[[Arbiter, Space, Any], None] | None:
         """The user's callback."""
         return self._pre_solve
 
     @pre_solve.setter
-    def pre_solve(self, func: Optional[Callable[[Arbiter, Space, Any], None]]) -> None:
+    def pre_solve(self, func: Callable[[Arbiter, Space, Any], None] | None) -> None:
         self._pre_solve = func
-        if func is None and self.compiled is not None:
-            self._handler.preSolveFunc = self.compiled
-        else:
+        self._wire()
+
+    def _wire(self) -> None:
+        if self.compiled is None or self._pre_solve is not None or self.adopts:
             self._handler.preSolveFunc = lib.ext_cpCollisionPreSolveFunc
+        else:
+            self._handler.preSolveFunc = self.compiled
+
+    def adopt_contacts(self, current: Any) -> None:
+        """Take over the contacts of a space that this one is a copy of, when the first of them is resolved.
+
+        pymunk restores arbiters with their contacts and impulses, but not with the data that
+        points to them. The contact of the arbiter at hand is gone already and comes from
+        SavedContacts.
+        """
+        self.adopts = False
+        self._wire()
+        for arbiter in self._space._get_arbiters():
+            if arbiter.data or arbiter.state != NORMAL:
+                continue
+            if arbiter.a not in self.frames and arbiter.b not in self.frames:
+                continue
+            if arbiter == current:
+                saved = self._data[SavedContacts].find(
+                    shape_at(arbiter.a), shape_at(arbiter.b)
+                )
+                if saved is not None:
+                    self._first_contact = ffi.new("struct cpContact *", saved)
+                    self._first_contact.hash = address(arbiter.a)
+                    arbiter.data = self._first_contact
+            elif arbiter.count > 0:
+                arbiter.contacts[0].hash = address(arbiter.a)
+                arbiter.data = arbiter.contacts
+
+
+class SavedContacts:
+    """The contacts of a space's arbiters, gathered when a copy or a pickle of the space is made.
+
+    It is among the data of a handler, with which pymunk copies it.
+    """
+
+    def __init__(self, space: Space) -> None:
+        self._space = weakref.ref(space)
+        self._contacts: list[tuple[Shape, Shape, dict[str, Any]]] = []
+
+    def find(self, a: Shape, b: Shape) -> dict[str, Any] | None:
+        """The contact of two shapes when the copy was made, None if they did not touch."""
+        for first, second, contact in self._contacts:
+            if first is a and second is b:
+                return contact
+            if first is b and second is a:
+                return {**contact, "r1": contact["r2"], "r2": contact["r1"]}
+        return None
+
+    def __getstate__(self) -> list[tuple[Shape, Shape, dict[str, Any]]]:
+        space = self._space()
+        if space is None:
+            return []
+        return [
+            (
+                shape_at(arbiter.a),
+                shape_at(arbiter.b),
+                _contact_to_dict(arbiter.contacts[0]),
+            )
+            for arbiter in space._get_arbiters()
+            if arbiter.data and arbiter.count > 0
+        ]
+
+    def __setstate__(self, contacts: list[tuple[Shape, Shape, dict[str, Any]]]) -> None:
+        self._space = NO_SPACE
+        self._contacts = contacts
 
 
 class _Dispatcher:
@@ -114,6 +187,8 @@ class _Dispatcher:
 
     def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
         handler = self._handler
+        if handler.adopts:
+            handler.adopt_contacts(arbiter._arbiter)
         if handler.compiled is not None:
             handler.compiled(arbiter._arbiter, NULL, NULL)
         else:
@@ -130,7 +205,7 @@ class _Dispatcher:
         self._handler.separate(arbiter, space, data)
 
 
-def global_handler(space: Space) -> Optional[CollisionHandler]:
+def global_handler(space: Space) -> CollisionHandler | None:
     """The handler that space.on_collision(None, None) made, if any."""
     return space._handlers.get(_GLOBAL)
 
@@ -138,7 +213,7 @@ def global_handler(space: Space) -> Optional[CollisionHandler]:
 def install(
     space: Space,
     resolve: Callable[[dict[Any, Frame], Any], None],
-    compiled: Optional[Any],
+    compiled: Any | None,
 ) -> ContactHandler:
     """Put a ContactHandler in the place of the space's global handler, with the callbacks it had."""
     if _GLOBAL not in space._handlers:

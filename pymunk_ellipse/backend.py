@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from functools import cache
-from typing import Any, Optional
+from typing import Any
 
 from ._layout import unproved
 from ._pymunk import c_callback
@@ -25,7 +25,7 @@ def wanted() -> str:
 
 
 @cache
-def compiled_pre_solve() -> Optional[Any]:
+def compiled_pre_solve() -> Any | None:
     """The C callback to use, or None where Python resolves contacts.
 
     Raises ImportError if PYMUNK_ELLIPSE_BACKEND is compiled and numba is missing.

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba import carray  # type: ignore[attr-defined]
 from numba.core.event import Event, Listener, install_listener
 from numba.extending import register_jitable
 
@@ -94,7 +95,8 @@ CONTACT_HASH = _offset("cpContact", "hash")
 
 @register_jitable
 def kind_of(shape: int) -> int:
-    return load_int(load_word(shape, SHAPE_CLASS), 0)
+    kind: int = load_int(load_word(shape, SHAPE_CLASS), 0)
+    return kind
 
 
 @register_jitable
@@ -182,7 +184,7 @@ def contact_with_polygon(
 ) -> ellipse_ellipse.Contact:
     a, b, c, s, x, y = ellipse
     count = load_int(shape, POLYGON_COUNT)
-    planes = numba.carray(doubles_at(load_word(shape, POLYGON_PLANES)), 4 * count)
+    planes: Any = carray(doubles_at(load_word(shape, POLYGON_PLANES)), 4 * count)
     radius = load_double(shape, POLYGON_RADIUS)
     return collide_polygon(a, b, c, s, x, y, planes, count, radius, 0.0)[:6]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from math import cos, isclose, pi, sin
-from typing import Any, NoReturn, Optional
+from typing import Any, ClassVar, NoReturn
 
 import pymunk
 from pymunk import ContactPoint, ContactPointSet, Vec2d
@@ -43,11 +43,17 @@ class Ellipse(pymunk.Poly):
     # Where an ellipse without a body is.
     _updated: Transform = IDENTITY
 
-    _pickle_attrs_init = pymunk.Shape._pickle_attrs_init + ["a", "b", "offset", "angle"]
+    _pickle_attrs_init: ClassVar[list[str]] = [
+        *pymunk.Shape._pickle_attrs_init,
+        "a",
+        "b",
+        "offset",
+        "angle",
+    ]
 
     def __init__(
         self,
-        body: Optional[pymunk.Body],
+        body: pymunk.Body | None,
         a: float,
         b: float,
         offset: tuple[float, float] = (0, 0),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any, Optional
+from typing import Any
 
 from pymunk import Shape
 
@@ -22,7 +22,7 @@ def transform_of(cp_body: Any) -> Transform:
     return position.x, position.y, rotation.x, rotation.y
 
 
-def body_transform(shape: Shape) -> Optional[Transform]:
+def body_transform(shape: Shape) -> Transform | None:
     """The transform of a shape's body, None if it has none."""
     body = shape.body
     return None if body is None else transform_of(body._body)

@@ -54,7 +54,7 @@ def ellipse_ellipse(
 
     f, mx, my, px, py, evaluations = climb(pair, mx, my, ALL_ROUND, margin)
     if f < -sharpest(pair):
-        g, mx, my, swept = sweep(pair, mx, my, 2.0 * pi, ALL_ROUND, f, mx, my, margin)
+        _f, mx, my, swept = sweep(pair, mx, my, 2.0 * pi, ALL_ROUND, f, mx, my, margin)
         f, _slope, _between, mx, my, px, py = fitted_circles(pair, mx, my)
         evaluations += swept + 1
 

@@ -1,41 +1,68 @@
-"""How many vertices an ellipse's hull should have: the time per step of piles, by vertices and aspect ratio."""
+"""How many vertices and how much rounding an ellipse's hull should have: the time per step of piles."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from math import hypot, sqrt
+from math import atan2, cos, pi, sin, sqrt
 from pathlib import Path
 
-import numpy as np
 import pymunk
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse as EllipsePatch
 from matplotlib.patches import Polygon
 
 from pymunk_ellipse import Ellipse, backend
-from pymunk_ellipse.hull import DEFAULT_VERTICES, hull
+from pymunk_ellipse.hull import ROUNDING, VERTICES, Hull, hull_with_moment, rounded_hull
 
 from ._box import STEP
 from ._picture import OUTLINE, save
 from ._race import Course, Runner, Times, race
 
-VERTICES = 6, 8, 10, 12, 16, 24
-ASPECT_RATIOS = 1.0, 2.0, 4.0
+COUNTS = 6, 8, 10, 12
+ROUNDINGS = 0.0, 0.1, 0.2, 0.3, 0.5
+# The hull whose vertices give the ellipse's moment, instead of a rounding.
+MOMENT = "moment"
+ASPECT_RATIOS = 1.0, 2.0, 5.0, 10.0
+QUICK_ASPECT_RATIOS = (2.0,)
 # The same area for all: a b.
 MEAN_RADIUS = 10.0
 SETTLING = 2.0
 
-FULL = Course(500, 24, round(SETTLING / STEP), rounds=40, steps_per_round=6)
+FULL = Course(500, 20, round(SETTLING / STEP), rounds=30, steps_per_round=5)
 QUICK = Course(60, 8, round(SETTLING / STEP), rounds=5, steps_per_round=4)
 
+MakeHull = Callable[[float, float, float, float, float], Hull]
 
-def ellipse_with_hull(body: pymunk.Body, a: float, b: float, vertices: int) -> Ellipse:
-    """An ellipse whose hull has another number of vertices."""
-    ellipse = Ellipse(body, a, b)
-    corners, radius = hull(a, b, 0.0, 0.0, 0.0, vertices)
-    pymunk.Poly.unsafe_set_vertices(ellipse, corners)
-    pymunk.Poly.unsafe_set_radius(ellipse, radius)
-    return ellipse
+
+class EllipseWithHull(Ellipse):
+    """An ellipse with another hull than its own."""
+
+    def __init__(
+        self, body: pymunk.Body, a: float, b: float, make_hull: MakeHull
+    ) -> None:
+        self._make_hull = make_hull
+        super().__init__(body, a, b)
+
+    def _hull(self) -> Hull:
+        return self._make_hull(self.a, self.b, self.angle, *self.offset)
+
+
+def kind(count: int, rounding: float | str) -> str:
+    return f"{count} vertices, {rounding}"
+
+
+def hulls(quick: bool) -> dict[str, MakeHull]:
+    """What makes each kind of hull."""
+    result: dict[str, MakeHull] = {}
+    for count in (VERTICES,) if quick else COUNTS:
+        for rounding in ROUNDINGS:
+            result[kind(count, rounding)] = partial(
+                rounded_hull, count=count, rounding=rounding
+            )
+        result[kind(count, MOMENT)] = partial(hull_with_moment, count=count)
+    return result
 
 
 def semi_axes(aspect_ratio: float) -> tuple[float, float]:
@@ -45,81 +72,97 @@ def semi_axes(aspect_ratio: float) -> tuple[float, float]:
 def run(out: Path, quick: bool) -> None:
     """Time the piles of each aspect ratio in turn; a quick run has smaller and fewer."""
     course = QUICK if quick else FULL
-    default = str(DEFAULT_VERTICES)
-    print(f"{course.bodies} ellipses, {backend()} backend")
+    made = hulls(quick)
+    counts = (VERTICES,) if quick else COUNTS
+    chosen = kind(VERTICES, ROUNDING)
+    print(
+        f"{course.bodies} ellipses, {backend()} backend: time per step, "
+        f"of that with {VERTICES} vertices and a rounding of {ROUNDING:g}"
+    )
     raced: dict[float, Times] = {}
-    for aspect_ratio in ASPECT_RATIOS[1:2] if quick else ASPECT_RATIOS:
+    for aspect_ratio in QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS:
         a, b = semi_axes(aspect_ratio)
-        runners = {
-            str(n): Runner(
-                partial(ellipse_with_hull, a=a, b=b, vertices=n), a, backend()
-            )
-            for n in VERTICES
-        }
-        raced[aspect_ratio] = times = race(runners, course)
-        print(f"aspect ratio {aspect_ratio:g}")
-        for name in times.seconds:
-            print(
-                f"{name:>4} vertices: {times.milliseconds(name):.3f} ms per step, "
-                f"{times.ratio(name, default):.3f} of {default} vertices"
-            )
-    save(draw(raced), out / "hulls.png")
-
-
-def draw(raced: dict[float, Times]) -> Figure:
-    """The times by number of vertices, and some of the hulls."""
-    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
-    times_axes, hulls_axes = figure.subplots(1, 2)
-    default = str(DEFAULT_VERTICES)
-    for aspect_ratio, times in raced.items():
-        times_axes.plot(
-            VERTICES,
-            [times.ratio(str(n), default) for n in VERTICES],
-            marker="o",
-            label=f"aspect ratio {aspect_ratio:g}",
+        raced[aspect_ratio] = times = race(
+            {
+                name: Runner(
+                    partial(EllipseWithHull, a=a, b=b, make_hull=make_hull),
+                    max(a, b),
+                    backend(),
+                )
+                for name, make_hull in made.items()
+            },
+            course,
         )
-    times_axes.set_xlabel("vertices of the hull")
-    times_axes.set_xticks(VERTICES)
-    times_axes.set_title(f"time per step / that with {default} vertices")
-    times_axes.set_ylim(bottom=0.0)
-    times_axes.spines[["top", "right"]].set_visible(False)
-    times_axes.legend()
+        print(f"aspect ratio {aspect_ratio:g}, {times.milliseconds(chosen):.3f} ms")
+        print("vertices" + "".join(f"{column:>8}" for column in (*ROUNDINGS, MOMENT)))
+        for count in counts:
+            ratios = [
+                times.ratio(kind(count, column), chosen)
+                for column in (*ROUNDINGS, MOMENT)
+            ]
+            print(f"{count:8}" + "".join(f"{ratio:8.3f}" for ratio in ratios))
+    save(draw(raced, counts), out / "hulls.png")
+
+
+def draw(raced: dict[float, Times], counts: tuple[int, ...]) -> Figure:
+    """A panel of times for each aspect ratio, and what some hulls look like."""
+    figure = Figure(figsize=(3.0 * (len(raced) + 1), 3.8), layout="constrained")
+    shape_axes, *times_axes = figure.subplots(1, len(raced) + 1)
+    columns = [f"{rounding:g}" for rounding in ROUNDINGS] + [MOMENT]
+    chosen = kind(VERTICES, ROUNDING)
+    for axes, (aspect_ratio, times) in zip(times_axes, raced.items(), strict=True):
+        for count in counts:
+            axes.plot(
+                columns,
+                [
+                    times.ratio(kind(count, column), chosen)
+                    for column in (*ROUNDINGS, MOMENT)
+                ],
+                marker="o",
+                label=f"{count} vertices",
+            )
+        axes.axhline(1.0, color="gray", linestyle=":")
+        axes.sharey(times_axes[0])
+        axes.tick_params(axis="x", labelsize="small")
+        axes.set_xlabel("rounding")
+        axes.set_title(f"aspect ratio {aspect_ratio:g}")
+        axes.spines[["top", "right"]].set_visible(False)
+    times_axes[0].set_ylabel(f"time per step / {VERTICES} vertices, {ROUNDING:g}")
+    times_axes[0].legend(loc="upper left")
 
     a, b = semi_axes(2.0)
-    shown = *VERTICES[:2], VERTICES[-1]
-    for row, vertices in enumerate(shown):
-        y = -2.6 * b * row
-        corners, radius = hull(a, b, 0.0, 0.0, y, vertices)
-        hulls_axes.add_patch(Polygon(rounded(corners, radius), color="C0", alpha=0.3))
-        hulls_axes.add_patch(
+    shown: dict[str, MakeHull] = {
+        f"{VERTICES} vertices, 0": partial(rounded_hull, rounding=0.0),
+        f"{VERTICES} vertices, {ROUNDING:g}": rounded_hull,
+        f"{VERTICES} vertices, {MOMENT}": hull_with_moment,
+    }
+    for row, (label, make_hull) in enumerate(shown.items()):
+        y = -2.8 * b * row
+        draw_hull(shape_axes, make_hull(a, b, 0.0, 0.0, y))
+        shape_axes.add_patch(
             EllipsePatch((0.0, y), 2.0 * a, 2.0 * b, fill=False, edgecolor=OUTLINE)
         )
-        hulls_axes.annotate(f"{vertices} vertices", (0.0, y), ha="center", va="center")
-    hulls_axes.set_title("hulls")
-    hulls_axes.axis("off")
-    hulls_axes.autoscale_view()
-    hulls_axes.set_aspect("equal")
+        shape_axes.annotate(label, (0.0, y), ha="center", va="center", fontsize="small")
+    shape_axes.set_title("hulls of an ellipse")
+    shape_axes.axis("off")
+    shape_axes.autoscale_view()
+    shape_axes.set_aspect("equal")
     return figure
 
 
-def rounded(
-    corners: list[tuple[float, float]], radius: float
-) -> list[tuple[float, float]]:
-    """The outline of a convex polygon, counterclockwise, with a radius."""
+def draw_hull(axes: Axes, hull: Hull, steps: int = 16) -> None:
+    """Draw a hull: its vertices, counterclockwise, widened by its radius."""
+    vertices, radius = hull
     outline = []
-    for i, (x, y) in enumerate(corners):
-        before = corners[i - 1]
-        after = corners[(i + 1) % len(corners)]
-        first = _outward(before, (x, y))
-        last = _outward((x, y), after)
-        turn = (last - first) % (2.0 * np.pi)
-        for angle in first + turn * np.linspace(0.0, 1.0, 16):
-            outline.append((x + radius * np.cos(angle), y + radius * np.sin(angle)))
-    return outline
+    for i, (x, y) in enumerate(vertices):
+        first = outward(vertices[i - 1], (x, y))
+        turn = (outward((x, y), vertices[(i + 1) % len(vertices)]) - first) % (2.0 * pi)
+        for step in range(steps + 1):
+            angle = first + turn * step / steps
+            outline.append((x + radius * cos(angle), y + radius * sin(angle)))
+    axes.add_patch(Polygon(outline, color="C0", alpha=0.3))
 
 
-def _outward(start: tuple[float, float], end: tuple[float, float]) -> float:
-    """Angle of the outward normal of an edge."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    assert hypot(dx, dy) > 0.0
-    return float(np.arctan2(-dx, dy))
+def outward(start: tuple[float, float], end: tuple[float, float]) -> float:
+    """Angle of the outward normal of a polygon's edge."""
+    return atan2(start[0] - end[0], end[1] - start[1])

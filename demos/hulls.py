@@ -127,8 +127,9 @@ def draw(raced: dict[float, Times], counts: tuple[int, ...]) -> Figure:
         axes.set_xlabel("rounding")
         axes.set_title(f"aspect ratio {aspect_ratio:g}")
         axes.spines[["top", "right"]].set_visible(False)
+    times_axes[0].set_ylim(bottom=0.0)
     times_axes[0].set_ylabel(f"time per step / {VERTICES} vertices, {ROUNDING:g}")
-    times_axes[0].legend(loc="upper left")
+    times_axes[0].legend(loc="lower left")
 
     a, b = semi_axes(2.0)
     shown: dict[str, MakeHull] = {

@@ -20,8 +20,14 @@ __all__ = ["ffi", "lib"]
 FIRST_COLLISION = 0
 NORMAL = 1
 IGNORE = 2
+CACHED = 3
+
+# Phases of a collision, as handlers name them.
+PHASES = ("begin", "pre_solve", "post_solve", "separate")
 
 NULL = ffi.NULL
+
+_NOTHING = ffi.addressof(lib, "DoNothing")
 
 # What a shape without a space refers to.
 NO_SPACE = _dead_ref
@@ -61,52 +67,162 @@ def c_callback(callback: CCallback) -> Any:
 _kept: list[CCallback] = []
 
 
-class ContactHandler(CollisionHandler):
-    """The handler of every collision in a space with ellipses: resolves the contact, then calls the user's callbacks.
+Callback = Callable[[Arbiter, Space, Any], None]
+
+
+def _users_callback(phase: str) -> property:
+    """A property that holds the user's callback for a phase, and wires the C callbacks anew when it is set."""
+    attribute = f"_{phase}"
+
+    def get(handler: ChainedHandler) -> Callback | None:
+        callback: Callback | None = getattr(handler, attribute)
+        return callback
+
+    def set(handler: ChainedHandler, callback: Callback | None) -> None:
+        setattr(handler, attribute, callback)
+        handler.wire()
+
+    return property(get, set, doc=f"The user's callback for {phase}.")
+
+
+class ChainedHandler(CollisionHandler):
+    """A handler that stands between pymunk's C callbacks and the user's.
+
+    To pymunk, in space.on_collision and in copies of the space, it shows the user's callbacks.
+    The C callbacks see dispatcher: an object with _space, data, and the four methods _begin,
+    _pre_solve, _post_solve and _separate. wire says which of them are called at all.
+    """
+
+    def __init__(self, handler: Any, space: Space) -> None:
+        super().__init__(handler, space)
+        self._data.update(dict.fromkeys(PHASES))
+        self._dispatcher = self.make_dispatcher()
+        self._dispatcher_handle = ffi.new_handle(self._dispatcher)
+        handler.userData = self._dispatcher_handle
+        self.wire()
+
+    begin = _users_callback("begin")
+    pre_solve = _users_callback("pre_solve")
+    post_solve = _users_callback("post_solve")
+    separate = _users_callback("separate")
+
+    def make_dispatcher(self) -> Dispatcher:
+        """What the C callbacks call."""
+        return Dispatcher(self)
+
+    def wire(self) -> None:
+        """Have C call the phases for which the user has a callback."""
+        self.call_begin(self._begin is not None)
+        self.call_pre_solve(self._pre_solve is not None)
+        self.call_post_solve(self._post_solve is not None)
+        self.call_separate(self._separate is not None)
+
+    def call_begin(self, wanted: bool) -> None:
+        """Have C call the dispatcher's _begin, or not."""
+        function = lib.ext_cpCollisionBeginFunc if wanted else _NOTHING
+        self._handler.beginFunc = function
+
+    def call_pre_solve(self, wanted: bool, compiled: Any | None = None) -> None:
+        """Have C call the dispatcher's _pre_solve, or else a compiled callback or nothing."""
+        function = lib.ext_cpCollisionPreSolveFunc if wanted else compiled
+        self._handler.preSolveFunc = _NOTHING if function is None else function
+
+    def call_post_solve(self, wanted: bool) -> None:
+        """Have C call the dispatcher's _post_solve, or not."""
+        function = lib.ext_cpCollisionPostSolveFunc if wanted else _NOTHING
+        self._handler.postSolveFunc = function
+
+    def call_separate(self, wanted: bool) -> None:
+        """Have C call the dispatcher's _separate, or not."""
+        function = lib.ext_cpCollisionSeparateFunc if wanted else _NOTHING
+        self._handler.separateFunc = function
+
+
+class Dispatcher:
+    """Calls the user's callbacks of a handler."""
+
+    def __init__(self, handler: ChainedHandler) -> None:
+        self._handler = handler
+        self._space = handler._space
+        self.data = handler.data
+
+    def _begin(self, arbiter: Arbiter, space: Space, data: Any) -> None:
+        if self._handler._begin is not None:
+            self._handler._begin(arbiter, space, data)
+
+    def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
+        if self._handler._pre_solve is not None:
+            self._handler._pre_solve(arbiter, space, data)
+
+    def _post_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
+        if self._handler._post_solve is not None:
+            self._handler._post_solve(arbiter, space, data)
+
+    def _separate(self, arbiter: Arbiter, space: Space, data: Any) -> None:
+        if self._handler._separate is not None:
+            self._handler._separate(arbiter, space, data)
+
+
+class ContactHandler(ChainedHandler):
+    """The handler of all collisions in a space with ellipses: resolves the contact, then calls the user's callback.
 
     It takes the place that space.on_collision(None, None, ...) looks up, so that callbacks the
-    user sets there, earlier or later, chain with the contacts instead of replacing them. To
-    pymunk, and in copies of the space, it shows the user's callbacks only.
+    user sets there, earlier or later, chain with the contacts instead of replacing them.
 
-    resolve is pre_solve in Python, compiled the C function pointer that does the same, or None.
-    frames are those of the ellipses in the space by their C shapes, for resolve.
+    python is pre_solve in Python and compiled the C function pointer that does the same, or
+    None. frames are those of the ellipses in the space by their C shapes.
     """
 
     def __init__(
         self,
         handler: Any,
         space: Space,
-        resolve: Callable[[dict[Any, Frame], Any], None],
+        python: Callable[[dict[Any, Frame], Any], None],
         compiled: Any | None,
     ) -> None:
-        super().__init__(handler, space)
         self.frames: dict[Any, Frame] = {}
-        self.resolve = resolve
+        self.python = python
         self.compiled = compiled
         # Until the first contact of the space, which may be a copy of one at work.
         self.adopts = True
-        self._data["pre_solve"] = None
+        super().__init__(handler, space)
         self._data[SavedContacts] = SavedContacts(space)
-        self._dispatcher = _Dispatcher(self)
-        self._dispatcher_handle = ffi.new_handle(self._dispatcher)
-        handler.userData = self._dispatcher_handle
-        self.pre_solve = None
 
-    @property
-    def pre_solve(self) -> Callable[[Arbiter, Space, Any], None] | None:
-        """The user's callback."""
-        return self._pre_solve
+    def make_dispatcher(self) -> Dispatcher:
+        return _ContactDispatcher(self)
 
-    @pre_solve.setter
-    def pre_solve(self, func: Callable[[Arbiter, Space, Any], None] | None) -> None:
-        self._pre_solve = func
-        self._wire()
+    def wire(self) -> None:
+        super().wire()
+        self.call_resolve(self._pre_solve is not None)
 
-    def _wire(self) -> None:
-        if self.compiled is None or self._pre_solve is not None or self.adopts:
-            self._handler.preSolveFunc = lib.ext_cpCollisionPreSolveFunc
+    def call_resolve(self, chained: bool) -> None:
+        """Have C resolve contacts, by way of the dispatcher if a callback is chained."""
+        if not self.frames:
+            self.call_pre_solve(chained)
         else:
-            self._handler.preSolveFunc = self.compiled
+            self.call_pre_solve(
+                chained or self.adopts or self.compiled is None, self.compiled
+            )
+
+    def enter(self, cp_shape: Any, frame: Frame) -> None:
+        """Resolve the contacts of an ellipse from now on; again with another frame when it changes."""
+        self.frames[cp_shape] = frame
+        self.wire()
+
+    def leave(self, cp_shape: Any) -> None:
+        """Forget an ellipse that leaves the space."""
+        self.frames.pop(cp_shape, None)
+        if not self.frames:
+            self.wire()
+
+    def resolve(self, arbiter: Any) -> None:
+        """Write the exact contact into an arbiter, if it has an ellipse."""
+        if self.adopts:
+            self.adopt_contacts(arbiter)
+        if self.compiled is not None:
+            self.compiled(arbiter, NULL, NULL)
+        else:
+            self.python(self.frames, arbiter)
 
     def adopt_contacts(self, current: Any) -> None:
         """Take over the contacts of a space that this one is a copy of, when the first of them is resolved.
@@ -116,7 +232,7 @@ class ContactHandler(CollisionHandler):
         SavedContacts.
         """
         self.adopts = False
-        self._wire()
+        self.wire()
         for arbiter in self._space._get_arbiters():
             if arbiter.data or arbiter.state != NORMAL:
                 continue
@@ -133,6 +249,16 @@ class ContactHandler(CollisionHandler):
             elif arbiter.count > 0:
                 arbiter.contacts[0].hash = address(arbiter.a)
                 arbiter.data = arbiter.contacts
+
+
+class _ContactDispatcher(Dispatcher):
+    """Resolves the contact before the user's callback sees it."""
+
+    def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
+        handler = self._handler
+        assert isinstance(handler, ContactHandler)
+        handler.resolve(arbiter._arbiter)
+        super()._pre_solve(arbiter, space, data)
 
 
 class SavedContacts:
@@ -173,38 +299,6 @@ class SavedContacts:
         self._contacts = contacts
 
 
-class _Dispatcher:
-    """What pymunk's C callbacks see of a ContactHandler."""
-
-    def __init__(self, handler: ContactHandler) -> None:
-        self._handler = handler
-        self._space = handler._space
-        self.data = handler.data
-
-    def _begin(self, arbiter: Arbiter, space: Space, data: Any) -> None:
-        assert self._handler.begin is not None
-        self._handler.begin(arbiter, space, data)
-
-    def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
-        handler = self._handler
-        if handler.adopts:
-            handler.adopt_contacts(arbiter._arbiter)
-        if handler.compiled is not None:
-            handler.compiled(arbiter._arbiter, NULL, NULL)
-        else:
-            handler.resolve(handler.frames, arbiter._arbiter)
-        if handler._pre_solve is not None:
-            handler._pre_solve(arbiter, space, data)
-
-    def _post_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
-        assert self._handler.post_solve is not None
-        self._handler.post_solve(arbiter, space, data)
-
-    def _separate(self, arbiter: Arbiter, space: Space, data: Any) -> None:
-        assert self._handler.separate is not None
-        self._handler.separate(arbiter, space, data)
-
-
 def global_handler(space: Space) -> CollisionHandler | None:
     """The handler that space.on_collision(None, None) made, if any."""
     return space._handlers.get(_GLOBAL)
@@ -212,18 +306,22 @@ def global_handler(space: Space) -> CollisionHandler | None:
 
 def install(
     space: Space,
-    resolve: Callable[[dict[Any, Frame], Any], None],
+    python: Callable[[dict[Any, Frame], Any], None],
     compiled: Any | None,
 ) -> ContactHandler:
     """Put a ContactHandler in the place of the space's global handler, with the callbacks it had."""
     if _GLOBAL not in space._handlers:
         space.on_collision(None, None)
     old = space._handlers[_GLOBAL]
-    handler = ContactHandler(old._handler, space, resolve, compiled)
-    handler._data.update(old.data)
-    handler.begin = old.begin
-    handler.pre_solve = old.pre_solve
-    handler.post_solve = old.post_solve
-    handler.separate = old.separate
-    space._handlers[_GLOBAL] = handler
+    handler = ContactHandler(old._handler, space, python, compiled)
+    replace(space, _GLOBAL, handler)
     return handler
+
+
+def replace(space: Space, key: Any, handler: ChainedHandler) -> None:
+    """Put a handler in the place of another one, with the callbacks that one had."""
+    old = space._handlers[key]
+    handler._data.update(old.data)
+    for phase in PHASES:
+        setattr(handler, phase, getattr(old, phase))
+    space._handlers[key] = handler

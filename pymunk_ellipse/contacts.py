@@ -17,11 +17,11 @@ def enter(space: Space, cp_shape: Any, frame: Frame) -> None:
     handler = global_handler(space)
     if not isinstance(handler, ContactHandler):
         handler = install(space, pre_solve, compiled_pre_solve())
-    handler.frames[cp_shape] = frame
+    handler.enter(cp_shape, frame)
 
 
 def leave(space: Space, cp_shape: Any) -> None:
     """Forget an ellipse that leaves the space."""
     handler = global_handler(space)
     if isinstance(handler, ContactHandler):
-        handler.frames.pop(cp_shape, None)
+        handler.leave(cp_shape)

@@ -122,12 +122,13 @@ def draw(raced: dict[float, Times], counts: tuple[int, ...]) -> Figure:
                 label=f"{count} vertices",
             )
         axes.axhline(1.0, color="gray", linestyle=":")
-        axes.sharey(times_axes[0])
         axes.tick_params(axis="x", labelsize="small")
         axes.set_xlabel("rounding")
         axes.set_title(f"aspect ratio {aspect_ratio:g}")
         axes.spines[["top", "right"]].set_visible(False)
-    times_axes[0].set_ylim(bottom=0.0)
+    highest = max(axes.get_ylim()[1] for axes in times_axes)
+    for axes in times_axes:
+        axes.set_ylim(0.0, highest)
     times_axes[0].set_ylabel(f"time per step / {VERTICES} vertices, {ROUNDING:g}")
     times_axes[0].legend(loc="lower left")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from pymunk import Arbiter, Shape, Space
 from pymunk._chipmunk_cffi import ffi, lib
@@ -14,7 +14,7 @@ from pymunk.arbiter import _contact_to_dict
 
 from .narrowphase.placement import Frame
 
-__all__ = ["ffi", "lib"]
+__all__ = ["CollisionHandler", "ffi", "lib"]
 
 # States of an arbiter (chipmunk_structs.h).
 FIRST_COLLISION = 0
@@ -169,8 +169,9 @@ class ContactHandler(ChainedHandler):
     It takes the place that space.on_collision(None, None, ...) looks up, so that callbacks the
     user sets there, earlier or later, chain with the contacts instead of replacing them.
 
-    python is pre_solve in Python and compiled the C function pointer that does the same, or
-    None. frames are those of the ellipses in the space by their C shapes.
+    python is pre_solve in Python, and find_compiled returns the C function pointer that does
+    the same, or None; it is asked when the first ellipse enters. frames are those of the
+    ellipses in the space, by their C shapes.
     """
 
     def __init__(
@@ -178,11 +179,12 @@ class ContactHandler(ChainedHandler):
         handler: Any,
         space: Space,
         python: Callable[[dict[Any, Frame], Any], None],
-        compiled: Any | None,
+        find_compiled: Callable[[], Any | None],
     ) -> None:
         self.frames: dict[Any, Frame] = {}
         self.python = python
-        self.compiled = compiled
+        self.find_compiled = find_compiled
+        self.compiled: Any | None = None
         # Until the first contact of the space, which may be a copy of one at work.
         self.adopts = True
         super().__init__(handler, space)
@@ -206,6 +208,8 @@ class ContactHandler(ChainedHandler):
 
     def enter(self, cp_shape: Any, frame: Frame) -> None:
         """Resolve the contacts of an ellipse from now on; again with another frame when it changes."""
+        if not self.frames:
+            self.compiled = self.find_compiled()
         self.frames[cp_shape] = frame
         self.wire()
 
@@ -304,24 +308,44 @@ def global_handler(space: Space) -> CollisionHandler | None:
     return space._handlers.get(_GLOBAL)
 
 
+_Handler = TypeVar("_Handler", bound=ChainedHandler)
+
+
 def install(
     space: Space,
-    python: Callable[[dict[Any, Frame], Any], None],
-    compiled: Any | None,
-) -> ContactHandler:
-    """Put a ContactHandler in the place of the space's global handler, with the callbacks it had."""
-    if _GLOBAL not in space._handlers:
-        space.on_collision(None, None)
-    old = space._handlers[_GLOBAL]
-    handler = ContactHandler(old._handler, space, python, compiled)
-    replace(space, _GLOBAL, handler)
-    return handler
-
-
-def replace(space: Space, key: Any, handler: ChainedHandler) -> None:
-    """Put a handler in the place of another one, with the callbacks that one had."""
+    make: Callable[[Any, Space], _Handler],
+    collision_type_a: int | None = None,
+    collision_type_b: int | None = None,
+) -> _Handler:
+    """Put a handler in the place of the space's handler for two collision types, with the callbacks that one had."""
+    key = collision_type_a, collision_type_b
+    if key not in space._handlers:
+        Space.on_collision(space, collision_type_a, collision_type_b)
     old = space._handlers[key]
+    handler = make(old._handler, space)
     handler._data.update(old.data)
     for phase in PHASES:
         setattr(handler, phase, getattr(old, phase))
     space._handlers[key] = handler
+    return handler
+
+
+def call_all_handlers(
+    phase: str, arbiter: Any, space: Space, last: ContactHandler
+) -> None:
+    """Call the callbacks for a phase of all handlers of an arbiter, as Chipmunk does (cpSpaceCollideShapes)."""
+    function = {"begin": "beginFunc", "separate": "separateFunc"}[phase]
+    handlers = (
+        arbiter.handlerAB,
+        arbiter.handlerBA,
+        arbiter.handlerA,
+        arbiter.handlerB,
+        last._handler,
+    )
+    for i, handler in enumerate(handlers):
+        swaps = i % 2 == 1
+        if swaps:
+            arbiter.swapped = not arbiter.swapped
+        getattr(handler, function)(arbiter, space._space, handler.userData)
+        if swaps:
+            arbiter.swapped = not arbiter.swapped

@@ -12,11 +12,16 @@ from .narrowphase.placement import Frame
 from .resolver import pre_solve
 
 
+def contact_handler(handler: Any, space: Space) -> ContactHandler:
+    """The handler that resolves contacts in a plain pymunk.Space."""
+    return ContactHandler(handler, space, pre_solve, compiled_pre_solve)
+
+
 def enter(space: Space, cp_shape: Any, frame: Frame) -> None:
     """Resolve the contacts of an ellipse from now on; again with another frame when it changes."""
     handler = global_handler(space)
     if not isinstance(handler, ContactHandler):
-        handler = install(space, pre_solve, compiled_pre_solve())
+        handler = install(space, contact_handler)
     handler.enter(cp_shape, frame)
 
 

@@ -1,0 +1,203 @@
+"""EventSpace: collision callbacks that begin, last and end with the contact of the ellipses, not of their hulls."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pymunk
+from pymunk import Arbiter
+
+from . import _pymunk
+from ._pymunk import (
+    CACHED,
+    FIRST_COLLISION,
+    IGNORE,
+    Callback,
+    ChainedHandler,
+    CollisionHandler,
+    ContactHandler,
+    Dispatcher,
+    call_all_handlers,
+)
+from .backend import compiled_pre_solve
+from .ellipse import Ellipse
+from .resolver import pre_solve
+
+
+class Touches:
+    """Which pairs with an ellipse touch, as the user has been told.
+
+    Chipmunk calls begin and separate when hulls begin and cease to overlap. The first callback
+    that it calls for a pair in a step resolves the contact here, and tells the user of a touch
+    that begins or ends by calling the handlers again, as Chipmunk would.
+    """
+
+    def __init__(self, contacts: ContactHandler) -> None:
+        self.contacts = contacts
+        self.touching: set[Any] = set()
+        # Whether any callback depends on it.
+        self.listened = False
+        # Whether a call comes from here, rather than from Chipmunk.
+        self.telling = False
+        # The pair that was resolved last in this step.
+        self.current: Any = None
+
+    def with_ellipse(self, arbiter: Any) -> bool:
+        """Whether an arbiter's contact is resolved here."""
+        frames = self.contacts.frames
+        return arbiter.a in frames or arbiter.b in frames
+
+    def touch(self, arbiter: Any, space: pymunk.Space) -> bool:
+        """Whether the two shapes touch, after telling of it if that is new."""
+        if arbiter != self.current:
+            self.current = arbiter
+            self.contacts.resolve(arbiter)
+            if not self.listened:
+                return bool(arbiter.state != IGNORE)
+            if arbiter.state == IGNORE:
+                if arbiter in self.touching:
+                    self._part(arbiter, space)
+            elif arbiter not in self.touching:
+                self.touching.add(arbiter)
+                # Otherwise the two touched before anybody listened, or before the space was copied.
+                if arbiter.state == FIRST_COLLISION:
+                    self._tell("begin", arbiter, space)
+        return arbiter in self.touching
+
+    def _part(self, arbiter: Any, space: pymunk.Space) -> None:
+        self.touching.discard(arbiter)
+        # As it is when Chipmunk calls separate: without contact points.
+        arbiter.state = CACHED
+        self._tell("separate", arbiter, space)
+        arbiter.state = IGNORE
+        # What a callback set lasts until the two part.
+        arbiter.processCollision = True
+
+    def _tell(self, phase: str, arbiter: Any, space: pymunk.Space) -> None:
+        self.telling = True
+        try:
+            call_all_handlers(phase, arbiter, space, self.contacts)
+        finally:
+            self.telling = False
+
+
+class _EventDispatcher(Dispatcher):
+    """Passes Chipmunk's calls on to the user for the pairs that it judges rightly, and exact ones for the others."""
+
+    def __init__(self, handler: ChainedHandler, touches: Touches) -> None:
+        super().__init__(handler)
+        self._touches = touches
+
+    def _begin(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
+        touches = self._touches
+        if touches.telling or not touches.with_ellipse(arbiter._arbiter):
+            super()._begin(arbiter, space, data)
+
+    def _pre_solve(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
+        touches = self._touches
+        pair = arbiter._arbiter
+        if not touches.with_ellipse(pair) or touches.touch(pair, space):
+            super()._pre_solve(arbiter, space, data)
+
+    def _separate(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
+        touches = self._touches
+        pair = arbiter._arbiter
+        # By their objects, because one that is removed is no longer among the frames.
+        exact = any(
+            isinstance(_pymunk.shape_at(shape), Ellipse) for shape in (pair.a, pair.b)
+        )
+        if touches.telling or not exact or pair in touches.touching:
+            super()._separate(arbiter, space, data)
+
+
+class _LastDispatcher(_EventDispatcher):
+    """The dispatcher of the global handler, which Chipmunk calls last."""
+
+    def _separate(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
+        super()._separate(arbiter, space, data)
+        self._touches.touching.discard(arbiter._arbiter)
+
+
+def listens(handler: CollisionHandler) -> bool:
+    """Whether a handler has a callback of the user that depends on whether two ellipses touch."""
+    return not (handler.begin is handler.pre_solve is handler.separate is None)
+
+
+class EventHandler(ChainedHandler):
+    """The handler of one pair of collision types."""
+
+    def __init__(self, handler: Any, space: pymunk.Space, touches: Touches) -> None:
+        self._touches = touches
+        super().__init__(handler, space)
+
+    def make_dispatcher(self) -> Dispatcher:
+        return _EventDispatcher(self, self._touches)
+
+    def wire(self) -> None:
+        super().wire()
+        self.call_pre_solve(listens(self))
+
+
+class GlobalEventHandler(ContactHandler):
+    """The handler of all pairs, the last one that Chipmunk calls."""
+
+    def __init__(self, handler: Any, space: pymunk.Space) -> None:
+        super().__init__(handler, space, pre_solve, compiled_pre_solve)
+
+    def make_dispatcher(self) -> Dispatcher:
+        self.touches = Touches(self)
+        return _LastDispatcher(self, self.touches)
+
+    def wire(self) -> None:
+        super().wire()
+        self.call_resolve(listens(self))
+        self.touches.listened = any(map(listens, self._space._handlers.values()))
+        self.call_separate(self.touches.listened)
+        if not self.touches.listened:
+            self.touches.touching.clear()
+
+
+class EventSpace(pymunk.Space):
+    """A pymunk.Space in which collision callbacks are those of the ellipses."""
+
+    def __init__(self, threaded: bool = False) -> None:
+        super().__init__(threaded)
+        self._touches = _pymunk.install(self, GlobalEventHandler).touches
+
+    def on_collision(
+        self,
+        collision_type_a: int | None = None,
+        collision_type_b: int | None = None,
+        begin: Callback | None = None,
+        pre_solve: Callback | None = None,
+        post_solve: Callback | None = None,
+        separate: Callback | None = None,
+        data: Any = None,
+    ) -> None:
+        """Set callbacks for the phases of a collision, see pymunk.Space.on_collision.
+
+        For a pair with an ellipse begin is called in the first step in which the two shapes
+        touch, pre_solve and post_solve in all in which they do, and separate in the first in
+        which they do not, or when one is removed. The arbiter has their exact contact.
+        """
+        key = collision_type_a, collision_type_b
+        if key not in self._handlers:
+            _pymunk.install(self, self._event_handler, *key)
+        super().on_collision(
+            collision_type_a,
+            collision_type_b,
+            begin,
+            pre_solve,
+            post_solve,
+            separate,
+            data,
+        )
+        self._touches.contacts.wire()
+
+    def _event_handler(self, handler: Any, space: pymunk.Space) -> EventHandler:
+        return EventHandler(handler, space, self._touches)
+
+    def step(self, dt: float) -> None:
+        """Update the space for the given time step, see pymunk.Space.step."""
+        self._touches.current = None
+        super().step(dt)

@@ -7,11 +7,23 @@ import pymunk
 import pytest
 from test_narrowphase import KINDS, random_pair
 
-import pymunk_ellipse.hull
 from pymunk_ellipse import Ellipse
-from pymunk_ellipse.hull import hull
+from pymunk_ellipse.hull import hull_with_moment, rounded_hull
+
+hulls = pytest.mark.parametrize("hull", [rounded_hull, hull_with_moment])
 
 DIRECTIONS = np.linspace(0, 2 * pi, 5000, endpoint=False)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.05, 0.5, 0.99])
+@pytest.mark.parametrize("aspect", [1.0, 3.0, 100.0])
+def test_any_rounding_contains_the_ellipse(aspect, rounding):
+    vertices, radius = rounded_hull(aspect, 1.0, 0.0, 0.0, 0.0, 8, rounding)
+    assert radius == pytest.approx(rounding, abs=1e-6)
+    u, v = np.cos(DIRECTIONS), aspect * np.sin(DIRECTIONS)
+    cosine, sine = u / np.hypot(u, v), v / np.hypot(u, v)
+    ellipse = np.hypot(aspect * cosine, sine)
+    assert np.all(supports(vertices, radius, cosine, sine) >= ellipse)
 
 
 def supports(vertices, radius, cosine, sine):
@@ -21,7 +33,8 @@ def supports(vertices, radius, cosine, sine):
 
 @pytest.mark.parametrize("count", [4, 5, 6, 7, 8, 9, 12, 16, 32])
 @pytest.mark.parametrize("aspect", [1.0, 1.5, 3.0, 10.0, 100.0, 1e4])
-def test_contains_the_ellipse(aspect, count):
+@hulls
+def test_contains_the_ellipse(hull, aspect, count):
     for a, b in ((aspect, 1.0), (1.0, aspect), (1e-3 * aspect, 1e-3)):
         vertices, radius = hull(a, b, 0.0, 0.0, 0.0, count)
         assert len(vertices) == count
@@ -39,7 +52,8 @@ def test_contains_the_ellipse(aspect, count):
 
 @pytest.mark.parametrize("count", [8, 12, 16])
 @pytest.mark.parametrize("aspect", [1.0, 2.0, 5.0])
-def test_is_not_much_larger(aspect, count):
+@hulls
+def test_is_not_much_larger(hull, aspect, count):
     vertices, radius = hull(aspect, 1.0, 0.0, 0.0, 0.0, count)
     cosine, sine = np.cos(DIRECTIONS), np.sin(DIRECTIONS)
     ellipse = np.hypot(aspect * cosine, sine)
@@ -47,7 +61,8 @@ def test_is_not_much_larger(aspect, count):
     assert excess.max() < 0.3 * aspect * (8 / count) ** 2
 
 
-def test_position_and_angle():
+@hulls
+def test_position_and_angle(hull):
     angle, x, y = 0.7, 3.0, -4.0
     vertices, radius = hull(3.0, 1.0, 0.0, 0.0, 0.0)
     placed, same = hull(3.0, 1.0, angle, x, y)
@@ -63,7 +78,7 @@ def test_position_and_angle():
 @pytest.mark.parametrize("count", [4, 5, 8, 12, 32])
 @pytest.mark.parametrize("aspect", [1.0, 2.0, 50.0])
 def test_moment_is_that_of_the_ellipse(aspect, count):
-    vertices, _radius = hull(aspect, 1.0, 0.3, 0.0, 0.0, count)
+    vertices, _radius = hull_with_moment(aspect, 1.0, 0.3, 0.0, 0.0, count)
     moment = pymunk.moment_for_poly(1.0, vertices)
     assert moment == pytest.approx((aspect**2 + 1) / 4, rel=1e-12)
 
@@ -117,13 +132,13 @@ def hulls_touch(first, second):
 
 def test_touch_test_notices_a_small_hull(monkeypatch):
     """The test above would fail if the hull did not contain the ellipse."""
-    large = pymunk_ellipse.hull.hull
 
     def small(a, b, *place):
-        vertices, _radius = large(0.8 * a, 0.8 * b, *place)
+        vertices, _radius = rounded_hull(0.8 * a, 0.8 * b, *place)
         return vertices, 0.0
 
-    monkeypatch.setattr("pymunk_ellipse.ellipse.hull", small)
+    monkeypatch.setattr("pymunk_ellipse.ellipse.rounded_hull", small)
+    monkeypatch.setattr("pymunk_ellipse.ellipse.hull_with_moment", small)
     first = Ellipse(None, 2, 1)
     second = Ellipse(None, 2, 1, offset=(3.9, 0))
     first.body = second.body = pymunk.Body(1, 1)

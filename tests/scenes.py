@@ -1,0 +1,145 @@
+"""Small scenes that several tests run, and what to measure in them."""
+
+import itertools
+from math import cos, pi, sin, sqrt
+
+import pymunk
+
+from pymunk_ellipse import Ellipse
+
+FLOOR = 1000
+
+
+def make_space(gravity=(0, 0), iterations=10, **options):
+    space = pymunk.Space(**options)
+    space.gravity = gravity
+    space.iterations = iterations
+    return space
+
+
+def add_body(
+    space, position=(0, 0), angle=0.0, velocity=(0, 0), spin=0.0, mass=0.0, moment=0.0
+):
+    body = pymunk.Body(mass, moment)
+    body.position = position
+    body.angle = angle
+    body.velocity = velocity
+    body.angular_velocity = spin
+    space.add(body)
+    return body
+
+
+def add_ellipse(
+    space,
+    a,
+    b,
+    position=(0, 0),
+    angle=0.0,
+    velocity=(0, 0),
+    spin=0.0,
+    friction=0.5,
+    elasticity=0.0,
+    mass=None,
+):
+    """An ellipse in the middle of a body of its own, with a density of one unless it has a mass."""
+    body = add_body(space, position, angle, velocity, spin)
+    shape = Ellipse(body, a, b)
+    shape.friction = friction
+    shape.elasticity = elasticity
+    if mass is None:
+        shape.density = 1
+    else:
+        shape.mass = mass
+    space.add(shape)
+    return shape
+
+
+def add_floor(space, y=0.0, half_width=1000.0, friction=1.0, elasticity=0.0):
+    floor = pymunk.Segment(space.static_body, (-half_width, y), (half_width, y), 0)
+    floor.friction = friction
+    floor.elasticity = elasticity
+    floor.collision_type = FLOOR
+    space.add(floor)
+    return floor
+
+
+def add_box(space, half_width, height, friction=0.5):
+    """A floor at y = 0 and two walls."""
+    corners = [
+        (-half_width, height),
+        (-half_width, 0),
+        (half_width, 0),
+        (half_width, height),
+    ]
+    for start, end in itertools.pairwise(corners):
+        wall = pymunk.Segment(space.static_body, start, end, 0)
+        wall.friction = friction
+        wall.collision_type = FLOOR
+        space.add(wall)
+
+
+def contacts(space):
+    """A list that every step's touching pairs are appended to: (first shape, second shape, contact point set, impulse on the second)."""
+    seen = []
+
+    def note(arbiter, space, data):
+        seen.append((*arbiter.shapes, arbiter.contact_point_set, arbiter.total_impulse))
+
+    space.on_collision(post_solve=note)
+    return seen
+
+
+def kinetic_energy_per_mass(space):
+    bodies = [body for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC]
+    energy = sum(body.kinetic_energy for body in bodies)
+    return energy / sum(body.mass for body in bodies)
+
+
+def height(a, b, angle):
+    """Height of the centre of an ellipse that lies on a floor: its support function straight down."""
+    return sqrt((a * sin(angle)) ** 2 + (b * cos(angle)) ** 2)
+
+
+def rocking_period(a, b, gravity, tilt, count=2000):
+    """Period of an ellipse that rocks on a flat floor without slip, from its energy.
+
+    T = 4 int_0^tilt dt / w with w^2 = 2 g (h(tilt) - h(t)) / (k^2 + h^2 + h'^2). With
+    t = tilt sin u the integrand is smooth, and the midpoint rule converges fast.
+    """
+    total = 0.0
+    for i in range(count):
+        u = (i + 0.5) * pi / 2 / count
+        t = tilt * sin(u)
+        h = height(a, b, t)
+        slope = (a * a - b * b) * sin(t) * cos(t) / h
+        inertia = (a * a + b * b) / 4 + h * h + slope * slope
+        # h(tilt) - h(t) without cancellation.
+        fall = (a * a - b * b) * sin(tilt - t) * sin(tilt + t)
+        fall /= height(a, b, tilt) + h
+        total += sqrt(inertia / (2 * gravity * fall)) * tilt * cos(u)
+    return 4 * total * pi / 2 / count
+
+
+def rock(space, a, b, tilt, seconds, dt, origin=(0.0, 0.0)):
+    """Angles, step by step, of an ellipse let go on a floor at a tilt."""
+    x, y = origin
+    floor = pymunk.Segment(space.static_body, (x - 50 * a, y), (x + 50 * a, y), 0)
+    floor.friction = 100
+    space.add(floor)
+    # A little into the floor, so that the first step sees a contact at any scale.
+    start = x, y + height(a, b, tilt) - 1e-6 * b
+    shape = add_ellipse(space, a, b, start, tilt, friction=100)
+    angles = [tilt]
+    for _ in range(round(seconds / dt)):
+        space.step(dt)
+        angles.append(shape.body.angle)
+    return angles
+
+
+def crossings(angles, dt):
+    """The times when an angle passes through zero on its way down."""
+    return [
+        (i + before / (before - after)) * dt
+        for i, (before, after) in enumerate(itertools.pairwise(angles))
+        if before > 0 >= after
+    ]

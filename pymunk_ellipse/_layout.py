@@ -188,7 +188,11 @@ def write_ellipse(cp_shape: Any, frame: Frame) -> None:
 
     Those are the moment of inertia per mass, the centre of gravity and the area, which pymunk
     has taken from the hull.
+
+    Raises ValueError for a hull of so few vertices that it needs the room itself.
     """
+    if _at(cp_shape, POLYGON_COUNT, "int")[0] <= INLINE_VERTICES:
+        raise ValueError(f"a hull needs more than {INLINE_VERTICES} vertices")
     a, b, _c, _s, x, y = frame
     mass_info = _at(cp_shape, SHAPE_MOMENT_PER_MASS, "double")
     for i, number in enumerate(((a * a + b * b) / 4.0, x, y, pi * a * b)):

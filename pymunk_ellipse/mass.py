@@ -38,4 +38,5 @@ def moment_for_ellipse(
     mass = _checks.number("mass", mass)
     a, b = _checks.semi_axes(a, b)
     center = _checks.point("offset", offset)
-    return mass * ((a * a + b * b) / 4.0 + center.get_length_sqrd())
+    distance_squared = center.x * center.x + center.y * center.y
+    return mass * ((a * a + b * b) / 4.0 + distance_squared)

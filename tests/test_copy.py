@@ -65,9 +65,11 @@ def places(space):
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("when", [0, 60])
-def test_copy_follows_the_original(way, when):
-    """Closely: cached contacts are carried over, and their impulses with them, unless pymunk's own copy loses them."""
+@pytest.mark.parametrize(
+    ("when", "difference"), [(0, 0.0), (60, 0.05), (200, 1e-3), (480, 1e-6)]
+)
+def test_copy_follows_the_original(way, when, difference):
+    """Exactly from the start, else closely: the order in which contacts are solved is a new one."""
     space = pile()
     step(space, when)
     twin = way(space)
@@ -75,7 +77,7 @@ def test_copy_follows_the_original(way, when):
     step(space, 12)
     step(twin, 12)
     for expected, found in zip(places(space), places(twin), strict=True):
-        assert found == pytest.approx(expected, abs=0.2)
+        assert found == pytest.approx(expected, abs=difference)
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -119,9 +121,9 @@ def test_resting_pile_stays_at_rest_in_a_copy(way):
     before = places(twin)
     for _ in range(30):
         twin.step(1 / 120)
-        assert kinetic_energy_per_mass(twin) < 2
+        assert kinetic_energy_per_mass(twin) < 1e-3
     for expected, found in zip(before, places(twin), strict=True):
-        assert found == pytest.approx(expected, abs=0.1)
+        assert found == pytest.approx(expected, abs=1e-4)
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -258,11 +258,13 @@ class ContactHandler(ChainedHandler):
 class _ContactDispatcher(Dispatcher):
     """Resolves the contact before the user's callback sees it."""
 
+    _handler: ContactHandler
+
     def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
         handler = self._handler
-        assert isinstance(handler, ContactHandler)
         handler.resolve(arbiter._arbiter)
-        super()._pre_solve(arbiter, space, data)
+        if handler._pre_solve is not None:
+            handler._pre_solve(arbiter, space, data)
 
 
 class SavedContacts:

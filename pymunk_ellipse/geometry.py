@@ -7,12 +7,27 @@ from typing import Any
 
 from pymunk import Shape
 
-from ._layout import neighbor_tangents
-from ._pymunk import lib
+from ._layout import (
+    BODY_POSITION,
+    BODY_SPIN,
+    BODY_TRANSFORM,
+    neighbor_tangents,
+    unproved,
+)
+from ._pymunk import ffi, lib
 
 # Position (x, y) and rotation vector (x, y) of a body: from local to world coordinates.
 Transform = tuple[float, float, float, float]
 IDENTITY: Transform = (0.0, 0.0, 1.0, 0.0)
+
+# Fields of a body, counted in doubles.
+_COS = BODY_TRANSFORM // 8
+_SIN = _COS + 1
+_X = _COS + 4
+_Y = _COS + 5
+_GRAVITY_X = BODY_POSITION // 8
+_GRAVITY_Y = _GRAVITY_X + 1
+_SPIN = BODY_SPIN // 8
 
 
 def transform_of(cp_body: Any) -> Transform:
@@ -22,19 +37,39 @@ def transform_of(cp_body: Any) -> Transform:
     return position.x, position.y, rotation.x, rotation.y
 
 
+def state_of(cp_body: Any) -> tuple[float, float, float, float, float, float, float]:
+    """The transform (four numbers), the centre of gravity in the world (x, y) and the angular velocity of a C body.
+
+    Chipmunk measures contact points from the centre of gravity.
+    """
+    if unproved() is None:
+        body = ffi.cast("double *", cp_body)
+        return (
+            body[_X],
+            body[_Y],
+            body[_COS],
+            body[_SIN],
+            body[_GRAVITY_X],
+            body[_GRAVITY_Y],
+            body[_SPIN],
+        )
+    x, y, cos, sin = transform_of(cp_body)
+    local = lib.cpBodyGetCenterOfGravity(cp_body)
+    return (
+        x,
+        y,
+        cos,
+        sin,
+        x + cos * local.x - sin * local.y,
+        y + sin * local.x + cos * local.y,
+        lib.cpBodyGetAngularVelocity(cp_body),
+    )
+
+
 def body_transform(shape: Shape) -> Transform | None:
     """The transform of a shape's body, None if it has none."""
     body = shape.body
     return None if body is None else transform_of(body._body)
-
-
-def center_of_gravity(cp_body: Any, transform: Transform) -> tuple[float, float]:
-    """The point in the world from which Chipmunk measures contact points on a body."""
-    x, y, cos, sin = transform
-    local = lib.cpBodyGetCenterOfGravity(cp_body)
-    local_x = local.x
-    local_y = local.y
-    return x + cos * local_x - sin * local_y, y + sin * local_x + cos * local_y
 
 
 def circle_in_world(cp_shape: Any, transform: Transform) -> tuple[float, float, float]:
@@ -99,12 +134,6 @@ def polygon_in_world(
         last_x = vx
         last_y = vy
     return planes, count, lib.cpPolyShapeGetRadius(cp_shape)
-
-
-def spin(cp_body: Any) -> float:
-    """The angular velocity of a body."""
-    omega: float = lib.cpBodyGetAngularVelocity(cp_body)
-    return omega
 
 
 def surface_velocity(cp_a: Any, cp_b: Any) -> tuple[float, float]:

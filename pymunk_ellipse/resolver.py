@@ -9,13 +9,11 @@ from pymunk import Circle, Segment, Shape
 from ._pymunk import FIRST_COLLISION, IGNORE, NULL, address, contact_at, shape_at
 from .geometry import (
     Transform,
-    center_of_gravity,
     circle_in_world,
     polygon_in_world,
     segment_in_world,
-    spin,
+    state_of,
     surface_velocity,
-    transform_of,
 )
 from .narrowphase.ellipse_ellipse import Contact, ellipse_ellipse
 from .narrowphase.ellipse_polygon import ellipse_polygon, ellipse_segment
@@ -67,21 +65,21 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     cp_b = arbiter.b
     frame_a = ellipses.get(cp_a)
     frame_b = ellipses.get(cp_b)
+    if frame_a is None and frame_b is None:
+        return
 
-    body_a = arbiter.body_a
-    body_b = arbiter.body_b
-    transform_a = transform_of(body_a)
-    transform_b = transform_of(body_b)
-    ax, ay = center_of_gravity(body_a, transform_a)
-    bx, by = center_of_gravity(body_b, transform_b)
+    ox_a, oy_a, cos_a, sin_a, ax, ay, spin_a = state_of(arbiter.body_a)
+    ox_b, oy_b, cos_b, sin_b, bx, by, spin_b = state_of(arbiter.body_b)
 
     # Last step's contact gives its impulses and a normal to start from. Its hash names the
     # shape that was a then; something else there is not that contact: the body slept, and
     # Chipmunk has used the memory for others.
     name_a = address(cp_a)
+    state = arbiter.state
+    data = arbiter.data
     last = None
-    if arbiter.data and arbiter.state != FIRST_COLLISION:
-        last = contact_at(arbiter.data)
+    if data and state != FIRST_COLLISION:
+        last = contact_at(data)
         if last.hash == name_a:
             last_a, last_b = last.r1, last.r2
         elif last.hash == address(cp_b):
@@ -96,28 +94,32 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
 
     start_x = start_y = 0.0
     if frame_a is not None:
-        ellipse = placed(frame_a, *transform_a)
+        ellipse = placed(frame_a, ox_a, oy_a, cos_a, sin_a)
         round_shapes = ellipse[0] == ellipse[1]
         if last is not None:
             start_x, start_y = normal_at(ellipse, ax + last_ax, ay + last_ay)
         if frame_b is not None:
-            other = placed(frame_b, *transform_b)
+            other = placed(frame_b, ox_b, oy_b, cos_b, sin_b)
             round_shapes = round_shapes and other[0] == other[1]
             contact = contact_with_ellipse(ellipse, other, start_x, start_y, 0.0)
         else:
             contact = contact_with_shape(
-                ellipse, shape_at(cp_b), transform_b, start_x, start_y, 0.0
+                ellipse,
+                shape_at(cp_b),
+                (ox_b, oy_b, cos_b, sin_b),
+                start_x,
+                start_y,
+                0.0,
             )
-    elif frame_b is not None:
-        ellipse = placed(frame_b, *transform_b)
+    else:
+        assert frame_b is not None
+        ellipse = placed(frame_b, ox_b, oy_b, cos_b, sin_b)
         round_shapes = ellipse[0] == ellipse[1]
         if last is not None:
             start_x, start_y = normal_at(ellipse, bx + last_bx, by + last_by)
         contact = contact_with_shape(
-            ellipse, shape_at(cp_a), transform_a, start_x, start_y, 0.0
+            ellipse, shape_at(cp_a), (ox_a, oy_a, cos_a, sin_a), start_x, start_y, 0.0
         )
-    else:
-        return
     distance, nx, ny, px, py, _evaluations = contact
 
     if distance > 0.0:
@@ -148,8 +150,8 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
         turn_surface_velocity(arbiter, vx, vy, nx, ny)
     if rolls:
         vx, vy = rolling_velocity(
-            spin(body_a),
-            spin(body_b),
+            spin_a,
+            spin_b,
             x - last_ax,
             y - last_ay,
             other_x - last_bx,
@@ -159,7 +161,7 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
         surface.x += vx
         surface.y += vy
 
-    if arbiter.state == IGNORE or not arbiter.data:
+    if state == IGNORE or not data:
         arbiter.state = FIRST_COLLISION
     arbiter.count = 1
     normal = arbiter.n
@@ -174,8 +176,11 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     r2.x = other_x
     r2.y = other_y
     point.hash = name_a
-    point.jnAcc = last.jnAcc if last is not None else 0.0
-    point.jtAcc = last.jtAcc if last is not None else 0.0
+    if last is not None:
+        point.jnAcc = last.jnAcc
+        point.jtAcc = last.jtAcc
+    else:
+        point.jnAcc = point.jtAcc = 0.0
     arbiter.data = contacts
 
 

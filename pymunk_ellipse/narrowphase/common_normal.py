@@ -37,8 +37,8 @@ DEPTH_TOLERANCE = 5e-7
 # A step must gain this part of what the slope promised (Armijo's rule), or steps across a sharp peak could go on.
 SUFFICIENT_RISE = 0.1
 
-# Roundoff of f and f', as a part of the lengths that enter them.
-ROUNDOFF = 1e-15
+# Roundoff of f and f' where the two touch, as a part of the longer semi-axes.
+ROUNDOFF = 2e-15
 
 # Bounds on the loops, far above what the climb (30) and the sweep (60) were seen to take at aspect ratio 1000.
 MAX_TURNS = 100
@@ -130,9 +130,8 @@ def climb(
 
     Returns f, n (x, y), the first ellipse's support point (x, y) and the number of evaluations.
     """
-    a1, _b1, a2, _b2, _c, _s, dx, dy = pair
     first_x, first_y, last_x, last_y = cone
-    noise = ROUNDOFF * (a1 + a2 + abs(dx) + abs(dy))
+    noise = ROUNDOFF * (pair[0] + pair[2])
     f, slope, between, nx, ny, px, py = fitted_circles(pair, nx, ny)
     evaluations = 1
     for _ in range(MAX_TURNS):

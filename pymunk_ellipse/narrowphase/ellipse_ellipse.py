@@ -53,7 +53,9 @@ def ellipse_ellipse(
         mx, my = first_guess(pair)
 
     f, mx, my, px, py, evaluations = climb(pair, mx, my, ALL_ROUND, margin)
-    if f < -sharpest(pair):
+    # Only deeper than the sharpest ends are round can another normal be better; most are not
+    # as deep as the first one's.
+    if f * a1 < -b1 * b1 and f < -sharpest(pair):
         _f, mx, my, swept = sweep(pair, mx, my, 2.0 * pi, ALL_ROUND, f, mx, my, margin)
         f, _slope, _between, mx, my, px, py = fitted_circles(pair, mx, my)
         evaluations += swept + 1

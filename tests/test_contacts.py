@@ -25,6 +25,7 @@ from scenes import (
 )
 
 from pymunk_ellipse import Ellipse
+from pymunk_ellipse._pymunk import global_handler
 
 pytestmark = pytest.mark.usefixtures("backend")
 
@@ -93,6 +94,17 @@ def scene_dynamic_polygon(space, make):
     yield body, make(body, 4)
 
 
+def scene_carried(space, make):
+    """A ball on the side of a wheel whose surface moves."""
+    ball = add_body(space, (3.9, 10.4), 0, (0, 0), 0, 2, inf)
+    shape = pymunk.Circle(ball, 4)
+    shape.friction = 5
+    space.add(shape)
+    wheel = make(space.static_body, 8, (0.5, -1))
+    wheel.surface_velocity = 40, 15
+    yield space.static_body, wheel
+
+
 def trajectory(scene, as_ellipse, seconds=1.0, dt=1 / 120):
     # Enough iterations for the order in which contacts are solved not to matter.
     space = make_space((0, -100), 100)
@@ -109,7 +121,14 @@ def trajectory(scene, as_ellipse, seconds=1.0, dt=1 / 120):
 
 @pytest.mark.parametrize(
     "scene",
-    [scene_floor, scene_slope, scene_balls, scene_offset, scene_dynamic_polygon],
+    [
+        scene_floor,
+        scene_slope,
+        scene_balls,
+        scene_offset,
+        scene_dynamic_polygon,
+        scene_carried,
+    ],
 )
 def test_equal_axes_follow_a_circle(scene):
     native, ellipse = trajectory(scene, False), trajectory(scene, True)
@@ -322,12 +341,11 @@ def settle(space, seconds=6.0, dt=1 / 120):
         space.step(dt)
 
 
-def forget_impulses(space):
+def forget_impulses(space, name):
     """Break warm starting: what a contact leaves behind is zero."""
 
     def forget(arbiter, space, data):
-        point = arbiter._arbiter.contacts[0]
-        point.jnAcc = point.jtAcc = 0.0
+        setattr(arbiter._arbiter.contacts[0], name, 0.0)
 
     space.on_collision(post_solve=forget)
 
@@ -339,9 +357,25 @@ def test_impulses_persist():
     assert kinetic_energy_per_mass(space) < 1e-3
     assert deepest(space) < 0.3
     broken = column_in_a_shaft()
-    forget_impulses(broken)
+    forget_impulses(broken, "jnAcc")
     settle(broken)
     assert deepest(broken) > 1
+
+
+def test_friction_persists():
+    """As above, with gravity aslant: friction alone keeps the column from sliding away."""
+    slides = []
+    for broken in (False, True):
+        space = column_in_a_shaft()
+        space.gravity = 30, -100
+        for shape in space.shapes:
+            shape.friction = 1
+        if broken:
+            forget_impulses(space, "jtAcc")
+        settle(space, 2)
+        slides.append(max(abs(body.position.x) for body in space.bodies))
+    assert slides[0] < 1
+    assert slides[1] > 3 * slides[0]
 
 
 def test_impulses_persist_while_rolling():
@@ -549,11 +583,19 @@ def test_first_contact_after_hulls_overlapped():
     assert firsts[-1] is True
 
 
-def test_no_stale_impulse_after_a_gap():
-    """Touch hard, part with the hulls still overlapping, touch softly: the soft touch must be soft."""
+@pytest.mark.parametrize("gap", [0.2, 30])
+def test_no_stale_impulse_after_a_gap(gap):
+    """Touch hard and part for a step, the hulls too or not: the next touch starts from nothing."""
     space = make_space()
     one, two, n = near_pair(space, 1e-6)
     seen = contacts(space)
+    starts = []
+
+    def look(arbiter, space, data):
+        point = arbiter._arbiter.contacts[0]
+        starts.append((arbiter.is_first_contact, point.jnAcc, point.jtAcc))
+
+    space.on_collision(pre_solve=look)
     two.body.velocity = -50 * n
     space.step(0.001)
     (hard,) = seen
@@ -561,15 +603,16 @@ def test_no_stale_impulse_after_a_gap():
     for s in (one, two):
         s.body.velocity = 0, 0
         s.body.angular_velocity = 0
-    two.body.position += 0.2 * n
+    two.body.position += gap * n
     space.step(0.001)
     assert len(seen) == 1
-    two.body.position -= 0.2 * n
+    two.body.position -= gap * n
     two.body.velocity = -0.01 * n
     space.step(0.001)
     assert len(seen) == 2
     assert seen[1][-1].length < 0.01 * hard[-1].length
     assert two.body.velocity.length < 1
+    assert starts[0] == starts[-1] == (True, 0, 0)
 
 
 def test_users_process_collision_stays():
@@ -1141,6 +1184,16 @@ def test_spaces_are_collected():
     del space
     gc.collect()
     assert [reference() for reference in references] == [None] * 20
+
+
+def test_space_forgets_what_left():
+    space = make_space()
+    eggs = [add_ellipse(space, 20, 10, (50 * i, 0)) for i in range(4)]
+    frames = global_handler(space).frames
+    assert len(frames) == 4
+    for egg in eggs[:3]:
+        space.remove(egg, egg.body)
+    assert set(frames) == {eggs[3]._shape}
 
 
 def test_polygon_in_the_place_of_a_removed_ellipse():

@@ -532,7 +532,6 @@ def test_area_functions():
     assert area_for_ellipse(2, 2) == pytest.approx(pymunk.area_for_circle(0, 2))
 
 
-@pytest.mark.filterwarnings("default::DeprecationWarning")
 def test_moment_function():
     assert moment_for_ellipse(5, 2, 2) == pytest.approx(
         pymunk.moment_for_circle(5, 0, 2)
@@ -564,11 +563,6 @@ def test_moment_function():
 def test_area_and_moment_check(function, a, b, error, message):
     with pytest.raises(error, match=message):
         function(a, b)
-
-
-@pytest.mark.xfail(strict=True, reason="calls the deprecated Vec2d.get_length_sqrd")
-def test_moment_function_does_not_warn():
-    assert moment_for_ellipse(4, 3, 1) == pytest.approx(10)
 
 
 def test_moment_checks_mass_and_offset():

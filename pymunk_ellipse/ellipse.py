@@ -7,7 +7,14 @@ from math import cos, isclose, pi, sin
 from typing import Any, ClassVar, NoReturn
 
 import pymunk
-from pymunk import ContactPoint, ContactPointSet, Vec2d
+from pymunk import (
+    BB,
+    ContactPoint,
+    ContactPointSet,
+    PointQueryInfo,
+    SegmentQueryInfo,
+    Vec2d,
+)
 
 from . import _checks, contacts
 from ._layout import unproved, write_ellipse
@@ -15,6 +22,8 @@ from ._pymunk import NO_SPACE
 from .geometry import IDENTITY, Transform, body_transform
 from .hull import Hull, hull_with_moment, rounded_hull
 from .narrowphase.placement import Frame, placed
+from .narrowphase.query import half_extents, nearest_point, segment_hit
+from .queries import updated_transform
 from .resolver import contact_with_ellipse, contact_with_shape
 
 
@@ -24,9 +33,11 @@ class Ellipse(pymunk.Poly):
     It is used like pymunk's own shapes. Contacts with ellipses, circles, segments and convex
     polygons are exact from the moment it is added to any :py:class:`pymunk.Space`.
 
-    pymunk sees a polygon with rounded corners that contains the ellipse: :py:attr:`bb`,
-    :py:meth:`get_vertices`, :py:attr:`radius` and the queries are those of this hull. Mass,
-    moment of inertia and area are those of the ellipse.
+    pymunk sees a polygon with rounded corners that contains the ellipse:
+    :py:meth:`get_vertices`, :py:attr:`radius` and what a plain :py:class:`pymunk.Space` finds
+    in its queries are those of this hull. Mass, moment of inertia, area, bounding box and the
+    shape's own queries are those of the ellipse, and in a :py:class:`pymunk_ellipse.Space` so
+    are all.
 
     The distance to a shape and the normal are found by fitting circles to the ellipses, after
     N. Hori, "Collision of Ellipses", at a common normal.
@@ -159,8 +170,9 @@ class Ellipse(pymunk.Poly):
         super().unsafe_set_vertices(vertices)
         super().unsafe_set_radius(radius)
         self._write()
-        # Once more, for the body to take over the new moment.
-        self.mass = self.mass
+        if self.mass > 0.0:
+            # Once more, for the body to take over the new moment.
+            self.mass = self.mass
         if self.space is not None:
             contacts.enter(self.space, self._shape, self._frame)
 
@@ -172,7 +184,7 @@ class Ellipse(pymunk.Poly):
         """The hull follows from the semi-axes: raises TypeError."""
         raise TypeError("an Ellipse has no radius to set, use unsafe_set_semi_axes")
 
-    def update(self, transform: pymunk.Transform) -> pymunk.BB:
+    def update(self, transform: pymunk.Transform) -> BB:
         """Update, cache and return the bounding box, with an explicit transform.
 
         For an ellipse without a body, that is also where shapes_collide takes it to be.
@@ -194,7 +206,76 @@ class Ellipse(pymunk.Poly):
             transform.a,
             transform.b,
         )
-        return super().update(transform)
+        super().update(transform)
+        return self.bb
+
+    def cache_bb(self) -> BB:
+        """Take over the body's position in pymunk, and return the bounding box."""
+        super().cache_bb()
+        return self.bb
+
+    @property
+    def bb(self) -> BB:
+        """The bounding box of the ellipse, where its body is now; without a body, where update put it.
+
+        >>> Ellipse(None, 2, 1, offset=(10, 0)).bb
+        BB(left=8.0, bottom=-1.0, right=12.0, top=1.0)
+        """
+        ellipse = self._placed()
+        width, height = half_extents(ellipse)
+        x, y = ellipse[4:]
+        return BB(x - width, y - height, x + width, y + height)
+
+    def point_query(self, p: tuple[float, float]) -> PointQueryInfo:
+        """The nearest point of the surface to p, with the distance and its gradient, all in world coordinates.
+
+        Inside the ellipse the distance is negative. The gradient is the outward unit normal at
+        the nearest point; it is finite everywhere, and where several points are nearest, as at
+        the centre, it is that of one of them.
+
+        The ellipse is taken where its body is now; without a body, where update put it.
+
+        Raises TypeError or ValueError for a point that is not two finite numbers.
+
+        >>> hit = Ellipse(None, 2, 1).point_query((0, 4))
+        >>> hit.point, hit.distance, hit.gradient
+        (Vec2d(0.0, 1.0), 3.0, Vec2d(0.0, 1.0))
+        """
+        x, y = _checks.point("p", p)
+        distance, nx, ny, px, py = nearest_point(self._placed(), x, y)
+        return PointQueryInfo(self, Vec2d(px, py), distance, Vec2d(nx, ny))
+
+    def segment_query(
+        self, start: tuple[float, float], end: tuple[float, float], radius: float = 0
+    ) -> SegmentQueryInfo | None:
+        """Where a circle of the given radius first touches the ellipse on its straight way from start to end.
+
+        Returns None if it does not. alpha is the part of the way before the touch (0 to 1),
+        point the point of the ellipse that is touched and normal the outward normal there, in
+        world coordinates.
+
+        If the two touch at the start already, alpha is zero, point is the end, and normal leads
+        from the nearest point of the surface to the start, as for all of pymunk's shapes.
+
+        The ellipse is taken where its body is now; without a body, where update put it.
+
+        Raises TypeError or ValueError for points that are not two finite numbers and for a
+        radius that is not one.
+
+        >>> hit = Ellipse(None, 2, 1).segment_query((0, 8), (0, -2), radius=2)
+        >>> hit.point, hit.normal, hit.alpha
+        (Vec2d(0.0, 1.0), Vec2d(0.0, 1.0), 0.5)
+        """
+        hit = segment_hit(
+            self._placed(),
+            *_checks.point("start", start),
+            *_checks.point("end", end),
+            _checks.number("radius", radius),
+        )
+        if hit is None:
+            return None
+        alpha, nx, ny, px, py = hit
+        return SegmentQueryInfo(self, Vec2d(px, py), Vec2d(nx, ny), alpha)
 
     def _placed(self) -> Frame:
         transform = body_transform(self)
@@ -207,8 +288,7 @@ class Ellipse(pymunk.Poly):
         surfaces in world coordinates and the distance, negative when they overlap. If they do
         not touch it has no points, and a zero normal.
 
-        Both are taken where their bodies are now. Without a body, the ellipse is where update
-        put it, else at the origin; b is at the origin.
+        Both are taken where their bodies are now; without a body, where update put them.
 
         >>> left = Ellipse(pymunk.Body(), 2, 1)
         >>> right = pymunk.Circle(pymunk.Body(), 1, offset=(2.5, 0))
@@ -221,7 +301,7 @@ class Ellipse(pymunk.Poly):
             contact = contact_with_ellipse(ellipse, b._placed(), 0.0, 0.0, 0.0)
         elif isinstance(b, pymunk.Shape):
             contact = contact_with_shape(
-                ellipse, b, body_transform(b) or IDENTITY, 0.0, 0.0, 0.0
+                ellipse, b, body_transform(b) or updated_transform(b), 0.0, 0.0, 0.0
             )
         else:
             raise TypeError(f"b must be a pymunk.Shape, got {b!r}")

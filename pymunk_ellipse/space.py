@@ -1,0 +1,248 @@
+"""Space: a pymunk.Space in which callbacks, queries and drawing see the ellipses, not their hulls."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from pymunk import (
+    BB,
+    PointQueryInfo,
+    SegmentQueryInfo,
+    Shape,
+    ShapeFilter,
+    ShapeQueryInfo,
+    SpaceDebugDrawOptions,
+)
+
+from . import _checks, queries
+from .drawing import TrueOutlines
+from .ellipse import Ellipse
+from .events import EventSpace
+
+
+class Space(EventSpace):
+    """A :py:class:`pymunk.Space` in which everything to be observed is the ellipse.
+
+    On a plain pymunk.Space contacts with ellipses are exact as well, but callbacks, queries
+    and drawing see their hulls. Here callbacks are called when ellipses touch, queries give
+    distances, points and normals of the ellipses, and :py:meth:`debug_draw` draws their
+    outlines. It is used like pymunk's own, and all that is without ellipses is pymunk's own.
+
+    As in pymunk, after a body has been moved by setting its position or angle,
+    :py:meth:`reindex_shapes_for_body` lets the next query find its shapes in their new places.
+
+    While there are ellipses in the space, the queries raise TypeError for arguments that are
+    not numbers, and ValueError for those that are not finite (a bounding box and a maximal
+    distance may be infinite).
+
+    >>> import pymunk
+    >>> space = Space()
+    >>> egg = Ellipse(space.static_body, 20, 10)
+    >>> space.add(egg)
+    >>> space.point_query_nearest((30, 0), 50, pymunk.ShapeFilter()).distance
+    10.0
+    """
+
+    def point_query(
+        self, point: tuple[float, float], max_distance: float, shape_filter: ShapeFilter
+    ) -> list[PointQueryInfo]:
+        """All shapes that are nearer to the point than max_distance, with the nearest points of their surfaces.
+
+        Inside a shape the distance is negative, and so may max_distance be: then it is the
+        depth that the point must exceed. Sensors are included.
+
+        >>> import pymunk
+        >>> space = Space()
+        >>> space.add(Ellipse(space.static_body, 20, 10))
+        >>> [hit] = space.point_query((0, 13), 5, pymunk.ShapeFilter())
+        >>> hit.point, hit.distance, hit.gradient
+        (Vec2d(0.0, 10.0), 3.0, Vec2d(0.0, 1.0))
+        """
+        if not queries.has_ellipses(self):
+            return super().point_query(point, max_distance, shape_filter)
+        point = _checks.point("point", point)
+        max_distance = queries.max_distance(max_distance)
+        # A hull contains its ellipse: its distance is smaller everywhere, inside and out, so
+        # none is missed.
+        found = []
+        for hit in super().point_query(point, max_distance, shape_filter):
+            if isinstance(hit.shape, Ellipse):
+                hit = hit.shape.point_query(point)
+                if not hit.distance < max_distance:
+                    continue
+            found.append(hit)
+        return found
+
+    def point_query_nearest(
+        self, point: tuple[float, float], max_distance: float, shape_filter: ShapeFilter
+    ) -> PointQueryInfo | None:
+        """The shape nearest to the point, if nearer than max_distance; see :py:meth:`point_query`."""
+        nearest = super().point_query_nearest(point, max_distance, shape_filter)
+        # If the nearest of shapes and hulls is a shape, ellipses are farther away still.
+        if nearest is None or not isinstance(nearest.shape, Ellipse):
+            return nearest
+        nearest = nearest.shape.point_query(point)
+        limit = min(nearest.distance, max_distance)
+        nearer = self.point_query(point, limit, shape_filter)
+        return min(
+            [nearest] * (nearest.distance < max_distance) + nearer,
+            key=lambda hit: hit.distance,
+            default=None,
+        )
+
+    def segment_query(
+        self,
+        start: tuple[float, float],
+        end: tuple[float, float],
+        radius: float,
+        shape_filter: ShapeFilter,
+    ) -> list[SegmentQueryInfo]:
+        """All shapes that a circle of the given radius touches on its way from start to end, and where first.
+
+        alpha is the part of the way before the touch, 0 to 1. For a shape that is touched at
+        the start alpha is zero, and what :py:meth:`Ellipse.segment_query` says holds. Sensors
+        are included.
+
+        Of pymunk's own shapes, those whose bounding boxes the segment itself does not cross
+        are not found, as in pymunk, whatever the radius.
+
+        >>> import pymunk
+        >>> space = Space()
+        >>> space.add(Ellipse(space.static_body, 20, 10))
+        >>> [hit] = space.segment_query((0, 50), (0, -50), 0, pymunk.ShapeFilter())
+        >>> hit.point, hit.normal, hit.alpha
+        (Vec2d(0.0, 10.0), Vec2d(0.0, 1.0), 0.4)
+        """
+        found = super().segment_query(start, end, radius, shape_filter)
+        if not queries.has_ellipses(self):
+            return found
+        start = _checks.point("start", start)
+        end = _checks.point("end", end)
+        radius = _checks.number("radius", radius)
+        hits = {}
+        for _, shape in queries.shapes_along(self, start, end, radius, shape_filter):
+            if isinstance(shape, Ellipse):
+                hit = shape.segment_query(start, end, radius)
+                if hit is not None:
+                    hits[shape] = hit
+        # Each in its hull's place, and those without at the end.
+        return [
+            hits.pop(hit.shape) if isinstance(hit.shape, Ellipse) else hit
+            for hit in found
+            if hit.shape in hits or not isinstance(hit.shape, Ellipse)
+        ] + list(hits.values())
+
+    def segment_query_first(
+        self,
+        start: tuple[float, float],
+        end: tuple[float, float],
+        radius: float,
+        shape_filter: ShapeFilter,
+    ) -> SegmentQueryInfo | None:
+        """The shape that a circle of the given radius touches first on its way from start to end; see :py:meth:`segment_query`.
+
+        One that it touches only at the end does not count, as in pymunk.
+        """
+        first = super().segment_query_first(start, end, radius, shape_filter)
+        if not queries.has_ellipses(self):
+            return first
+        start = _checks.point("start", start)
+        end = _checks.point("end", end)
+        radius = _checks.number("radius", radius)
+        if first is not None and isinstance(first.shape, Ellipse):
+            # pymunk's first of the other shapes may be behind it.
+            first = min(
+                (
+                    hit
+                    for hit in super().segment_query(start, end, radius, shape_filter)
+                    if not isinstance(hit.shape, Ellipse) and hit.alpha < 1.0
+                ),
+                key=lambda hit: hit.alpha,
+                default=None,
+            )
+        alpha = 1.0 if first is None else first.alpha
+        for reached, shape in queries.shapes_along(
+            self, start, end, radius, shape_filter
+        ):
+            if reached >= alpha:
+                break
+            if isinstance(shape, Ellipse):
+                hit = shape.segment_query(start, end, radius)
+                if hit is not None and hit.alpha < alpha:
+                    first = hit
+                    alpha = hit.alpha
+        return first
+
+    def bb_query(self, bb: BB, shape_filter: ShapeFilter) -> list[Shape]:
+        """All shapes whose bounding boxes overlap bb. Sensors are included.
+
+        >>> import pymunk
+        >>> space = Space()
+        >>> egg = Ellipse(space.static_body, 20, 10)
+        >>> space.add(egg)
+        >>> space.bb_query(pymunk.BB(20.5, 0, 30, 10), pymunk.ShapeFilter())
+        []
+        """
+        if not queries.has_ellipses(self):
+            return super().bb_query(bb, shape_filter)
+        bb = queries.box(bb)
+        return [
+            shape
+            for shape in super().bb_query(bb, shape_filter)
+            if not isinstance(shape, Ellipse) or shape.bb.intersects(bb)
+        ]
+
+    def shape_query(self, shape: Shape) -> list[ShapeQueryInfo]:
+        """All shapes in the space that overlap the given shape, with their contacts. Sensors are included.
+
+        The shape may be in the space or not. Without a body it is where its update put it.
+        Normals lead from it to the shapes found.
+
+        Raises TypeError if shape is not a pymunk.Shape.
+
+        >>> import pymunk
+        >>> space = Space()
+        >>> space.add(Ellipse(space.static_body, 20, 10))
+        >>> circle = pymunk.Circle(space.static_body, 5, offset=(24, 0))
+        >>> [hit] = space.shape_query(circle)
+        >>> hit.contact_point_set.points[0].distance
+        -1.0
+        """
+        if not isinstance(shape, Shape):
+            raise TypeError(f"shape must be a pymunk.Shape, got {shape!r}")
+        found = []
+        for hit in super().shape_query(shape):
+            if isinstance(shape, Ellipse):
+                contact = shape.shapes_collide(hit.shape)
+            elif isinstance(hit.shape, Ellipse):
+                contact = queries.mirrored(hit.shape.shapes_collide(shape))
+            else:
+                contact = hit.contact_point_set
+            if contact.points:
+                found.append(ShapeQueryInfo(hit.shape, contact))
+        return found
+
+    def debug_draw(self, options: SpaceDebugDrawOptions) -> None:
+        """Draw the space with the given options, ellipses with their true outlines.
+
+        An outline goes to the options' draw_polygon, with so many vertices that on the screen
+        none of its edges is farther from the ellipse than a tenth of a pixel (in the
+        units that the options' transform leads to) or a thousandth of its size, whichever is
+        less, and with a radius of zero. A line from the centre to the end of the semi-axis a
+        goes to draw_segment, so that rotation is seen.
+
+        >>> import pymunk
+        >>> class CountingOptions(pymunk.SpaceDebugDrawOptions):
+        ...     def draw_polygon(self, verts, radius, outline_color, fill_color):
+        ...         print(len(verts), "vertices, radius", radius)
+        ...     def draw_segment(self, a, b, color):
+        ...         print("from", a, "to", b)
+        >>> space = Space()
+        >>> space.add(Ellipse(space.static_body, 200, 100))
+        >>> space.debug_draw(CountingOptions())
+        100 vertices, radius 0.0
+        from Vec2d(0.0, 0.0) to Vec2d(200.0, 0.0)
+        """
+        if queries.has_ellipses(self):
+            options = cast(SpaceDebugDrawOptions, TrueOutlines(options))
+        super().debug_draw(options)

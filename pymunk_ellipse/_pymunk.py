@@ -40,6 +40,15 @@ def address(pointer: Any) -> int:
     return int(ffi.cast("uintptr_t", pointer))
 
 
+def contact_name(arbiter: Any) -> int:
+    """What the hash of an arbiter's contact is set to: the arbiter's address, and in its lowest bit the shapes' order.
+
+    Chipmunk may swap the two shapes from step to step.
+    """
+    in_order: bool = arbiter.a < arbiter.b
+    return int(ffi.cast("uintptr_t", arbiter)) | in_order
+
+
 def contact_at(pointer: Any) -> Any:
     """The cpContact that an arbiter's data points to."""
     return ffi.cast("struct cpContact *", pointer)
@@ -248,10 +257,10 @@ class ContactHandler(ChainedHandler):
                 )
                 if saved is not None:
                     self._first_contact = ffi.new("struct cpContact *", saved)
-                    self._first_contact.hash = address(arbiter.a)
+                    self._first_contact.hash = contact_name(arbiter)
                     arbiter.data = self._first_contact
             elif arbiter.count > 0:
-                arbiter.contacts[0].hash = address(arbiter.a)
+                arbiter.contacts[0].hash = contact_name(arbiter)
                 arbiter.data = arbiter.contacts
 
 

@@ -259,6 +259,7 @@ def _define(version: int) -> Any:
         bx = load_double(body_b, BODY_POSITION)
         by = load_double(body_b, BODY_POSITION + 8)
 
+        name = arbiter + 1 if shape_a < shape_b else arbiter
         last = load_word(arbiter, ARBITER_DATA)
         state = load_int(arbiter, ARBITER_STATE)
         touched = last != 0
@@ -269,13 +270,13 @@ def _define(version: int) -> Any:
         if state == FIRST_COLLISION:
             last = 0
         if last != 0:
-            name = load_word(last, CONTACT_HASH)
-            if name == shape_a:
+            difference = load_word(last, CONTACT_HASH) ^ name
+            if difference == 0:
                 last_ax = load_double(last, CONTACT_R1)
                 last_ay = load_double(last, CONTACT_R1 + 8)
                 last_bx = load_double(last, CONTACT_R2)
                 last_by = load_double(last, CONTACT_R2 + 8)
-            elif name == shape_b:
+            elif difference == 1:
                 last_ax = load_double(last, CONTACT_R2)
                 last_ay = load_double(last, CONTACT_R2 + 8)
                 last_bx = load_double(last, CONTACT_R1)
@@ -347,7 +348,7 @@ def _define(version: int) -> Any:
         store_double(point, CONTACT_R1 + 8, y)
         store_double(point, CONTACT_R2, other_x)
         store_double(point, CONTACT_R2 + 8, other_y)
-        store_word(point, CONTACT_HASH, shape_a)
+        store_word(point, CONTACT_HASH, name)
         normal_impulse = 0.0
         tangent_impulse = 0.0
         if last != 0:

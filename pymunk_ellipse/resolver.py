@@ -6,7 +6,7 @@ from typing import Any
 
 from pymunk import Circle, Segment, Shape
 
-from ._pymunk import FIRST_COLLISION, IGNORE, NULL, address, contact_at, shape_at
+from ._pymunk import FIRST_COLLISION, IGNORE, NULL, contact_at, contact_name, shape_at
 from .geometry import (
     Transform,
     circle_in_world,
@@ -72,17 +72,18 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     ox_b, oy_b, cos_b, sin_b, bx, by, spin_b = state_of(arbiter.body_b)
 
     # Last step's contact gives its impulses and a normal to start from. Its hash names the
-    # shape that was a then; something else there is not that contact: the body slept, and
-    # Chipmunk has used the memory for others.
-    name_a = address(cp_a)
+    # arbiter and the order of its shapes; anything else there is another contact: the pair was
+    # not solved or slept, and Chipmunk has used the memory again.
+    name = contact_name(arbiter)
     state = arbiter.state
     data = arbiter.data
     last = None
     if data and state != FIRST_COLLISION:
         last = contact_at(data)
-        if last.hash == name_a:
+        difference = last.hash ^ name
+        if difference == 0:
             last_a, last_b = last.r1, last.r2
-        elif last.hash == address(cp_b):
+        elif difference == 1:
             last_a, last_b = last.r2, last.r1
         else:
             last = None
@@ -175,7 +176,7 @@ def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
     r2 = point.r2
     r2.x = other_x
     r2.y = other_y
-    point.hash = name_a
+    point.hash = name
     if last is not None:
         point.jnAcc = last.jnAcc
         point.jtAcc = last.jtAcc

@@ -452,11 +452,6 @@ def test_swapped_shapes_roll():
     assert run(True) == pytest.approx(run(False), abs=1e-4)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="Chipmunk gives a contact's memory to the next pair when a pair is not solved, "
-    "and a contact of the same first shape there is taken for its own",
-)
 def test_unsolved_pair_has_no_impulse():
     """Two kinematic ellipses overlap and are never solved; one carries a third ellipse."""
     for places in permutations([(8, 3), (0, 0), (0, 19.95)]):

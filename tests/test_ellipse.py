@@ -662,10 +662,6 @@ def test_mass_follows_the_semi_axes():
     check_mass(body, [(3, 4, 2, (5, 0))])
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="_reshape sets the shape's mass of zero, which pymunk takes for the body's mass",
-)
 def test_changes_leave_the_bodys_own_mass_alone():
     space = pymunk.Space()
     egg = Ellipse(body_at(), 2, 1)

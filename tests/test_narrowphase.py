@@ -345,11 +345,6 @@ def test_segment_without_length_is_a_circle():
         )
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="a face without length has a zero normal, which the sweep starts from; "
-    "pymunk.Poly removes such vertices, its unsafe_set_vertices does not",
-)
 def test_repeated_vertex_makes_no_difference():
     random = np.random.default_rng(41)
     for _ in range(50):

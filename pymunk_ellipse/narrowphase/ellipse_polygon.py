@@ -228,4 +228,10 @@ def vertex_pair(
     vx, vy = vertex_in_frame(c, s, cx, cy, planes, i)
     first_x, first_y = normal_to_face(c, s, planes, i)
     last_x, last_y = normal_to_face(c, s, planes, (i + 1) % count)
+    # A vertex that is repeated ends a face without length, which has no normal.
+    for j in range(1, count):
+        if first_x == 0.0 and first_y == 0.0:
+            first_x, first_y = normal_to_face(c, s, planes, (i - j) % count)
+        if last_x == 0.0 and last_y == 0.0:
+            last_x, last_y = normal_to_face(c, s, planes, (i + 1 + j) % count)
     return (a, b, radius, radius, 1.0, 0.0, vx, vy), (first_x, first_y, last_x, last_y)

@@ -1195,7 +1195,7 @@ def test_polygon_in_the_place_of_a_removed_ellipse():
     """Nothing is remembered by an address that Chipmunk may use again."""
     space = make_space((0, -500))
     add_floor(space)
-    for _ in range(30):
+    for _ in range(8):
         egg = add_ellipse(space, 20, 10, (0, 12))
         settle(space, 0.05)
         space.remove(egg, egg.body)

@@ -22,7 +22,7 @@ def area_for_ellipse(a: float, b: float) -> float:
 def moment_for_ellipse(
     mass: float, a: float, b: float, offset: tuple[float, float] = (0, 0)
 ) -> float:
-    """Moment of inertia of a solid ellipse about the body's centre of gravity: mass ((a^2 + b^2)/4 + |offset|^2).
+    """Moment of inertia of a solid ellipse about the body's centre of gravity: mass ((a^2 + b^2)/4 + d^2), with d the offset's length.
 
     offset is the ellipse's centre in body local coordinates, as in pymunk.moment_for_circle.
     The angle of the ellipse makes no difference.

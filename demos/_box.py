@@ -68,6 +68,18 @@ class Box:
         self.impulse = pymunk.Vec2d.zero()
         self.space.step(STEP)
 
+    def count_contacts(self) -> int:
+        """Step once more, and count the pairs of shapes that touch in it."""
+        touching = 0
+
+        def count(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+            nonlocal touching
+            touching += 1
+
+        self.space.on_collision(None, None, post_solve=count)
+        self.step()
+        return touching
+
     @property
     def bodies(self) -> list[pymunk.Body]:
         return [shape.body for shape in self.shapes if shape.body is not None]

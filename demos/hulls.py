@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from math import atan2, cos, pi, sin, sqrt
 from pathlib import Path
+from statistics import geometric_mean, median
 
 import pymunk
 from matplotlib.axes import Axes
@@ -16,22 +19,27 @@ from matplotlib.patches import Polygon
 from pymunk_ellipse import Ellipse, backend
 from pymunk_ellipse.hull import ROUNDING, VERTICES, Hull, hull_with_moment, rounded_hull
 
-from ._box import STEP
 from ._picture import OUTLINE, save
-from ._race import Course, Runner, Times, race
+from ._race import Course, Runner, race
 
-COUNTS = 6, 8, 10, 12
-ROUNDINGS = 0.0, 0.1, 0.2, 0.3, 0.5
-# The hull whose vertices give the ellipse's moment, instead of a rounding.
-MOMENT = "moment"
-ASPECT_RATIOS = 1.0, 2.0, 5.0, 10.0
+# No fewer: only a hull of more than six vertices leaves room for the ellipse in its struct.
+COUNTS = 7, 8, 10, 12, 16
+ROUNDINGS = 0.0, 0.05, 0.1, 0.2, 0.3, 0.5
+QUICK_COUNTS = (VERTICES,)
+# Ellipses whose structs are not as known have this hull, so its price is told too.
+MOMENT = f"{VERTICES} vertices, moment"
+ASPECT_RATIOS = 1.0, 1.5, 2.0, 4.0, 7.0, 10.0
 QUICK_ASPECT_RATIOS = (2.0,)
 # The same area for all: a b.
 MEAN_RADIUS = 10.0
-SETTLING = 2.0
 
-FULL = Course(500, 20, round(SETTLING / STEP), rounds=30, steps_per_round=5)
-QUICK = Course(60, 8, round(SETTLING / STEP), rounds=5, steps_per_round=4)
+FULL = Course(500, 30, steps_per_round=5)
+QUICK = Course(60, 8, steps_per_round=4)
+ROUNDS = 16
+QUICK_ROUNDS = 5
+# A pile that has happened to settle more densely takes longer, so several are timed of each kind.
+SEEDS = 1, 2, 3
+QUICK_SEEDS = (1,)
 
 MakeHull = Callable[[float, float, float, float, float], Hull]
 
@@ -49,94 +57,179 @@ class EllipseWithHull(Ellipse):
         return self._make_hull(self.a, self.b, self.angle, *self.offset)
 
 
-def kind(count: int, rounding: float | str) -> str:
-    return f"{count} vertices, {rounding}"
+def kind(count: int, rounding: float) -> str:
+    return f"{count} vertices, {rounding:g}"
 
 
-def hulls(quick: bool) -> dict[str, MakeHull]:
+CHOSEN = kind(VERTICES, ROUNDING)
+
+
+def hulls(counts: tuple[int, ...]) -> dict[str, MakeHull]:
     """What makes each kind of hull."""
-    result: dict[str, MakeHull] = {}
-    for count in (VERTICES,) if quick else COUNTS:
-        for rounding in ROUNDINGS:
-            result[kind(count, rounding)] = partial(
-                rounded_hull, count=count, rounding=rounding
-            )
-        result[kind(count, MOMENT)] = partial(hull_with_moment, count=count)
-    return result
+    made: dict[str, MakeHull] = {
+        kind(count, rounding): partial(rounded_hull, count=count, rounding=rounding)
+        for count in counts
+        for rounding in ROUNDINGS
+    }
+    # The one in use is what all are compared with, whichever that is.
+    return {**made, CHOSEN: rounded_hull, MOMENT: hull_with_moment}
 
 
 def semi_axes(aspect_ratio: float) -> tuple[float, float]:
     return MEAN_RADIUS * sqrt(aspect_ratio), MEAN_RADIUS / sqrt(aspect_ratio)
 
 
-def run(out: Path, quick: bool) -> None:
-    """Time the piles of each aspect ratio in turn; a quick run has smaller and fewer."""
-    course = QUICK if quick else FULL
-    made = hulls(quick)
-    counts = (VERTICES,) if quick else COUNTS
-    chosen = kind(VERTICES, ROUNDING)
-    print(
-        f"{course.bodies} ellipses, {backend()} backend: time per step, "
-        f"of that with {VERTICES} vertices and a rounding of {ROUNDING:g}"
-    )
-    raced: dict[float, Times] = {}
-    for aspect_ratio in QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS:
+class Timing:
+    """Times of the kinds of hull at one aspect ratio: of a step, and of that with the chosen hull, for each seed."""
+
+    def __init__(
+        self,
+        made: dict[str, MakeHull],
+        aspect_ratio: float,
+        course: Course,
+        rounds: int,
+        seeds: tuple[int, ...],
+    ) -> None:
         a, b = semi_axes(aspect_ratio)
-        raced[aspect_ratio] = times = race(
-            {
-                name: Runner(
-                    partial(EllipseWithHull, a=a, b=b, make_hull=make_hull),
-                    max(a, b),
-                    backend(),
-                )
-                for name, make_hull in made.items()
-            },
-            course,
+        runners = {
+            (name, seed): Runner(
+                partial(EllipseWithHull, a=a, b=b, make_hull=make_hull),
+                max(a, b),
+                replace(course, seed=seed),
+                backend(),
+            )
+            for name, make_hull in made.items()
+            for seed in seeds
+        }
+        times = race(runners, rounds)
+        self.milliseconds = {
+            name: times.milliseconds(*((name, seed) for seed in seeds)) for name in made
+        }
+        self.ratios = {
+            name: [times.ratio([((name, seed), (CHOSEN, seed))]) for seed in seeds]
+            for name in made
+        }
+
+    def ratio(self, name: str) -> float:
+        """The median of all piles' ratios."""
+        return median(self.ratios[name])
+
+
+def run(out: Path, quick: bool) -> None:
+    """Time piles at every aspect ratio; a quick run has smaller and fewer."""
+    course = QUICK if quick else FULL
+    rounds = QUICK_ROUNDS if quick else ROUNDS
+    counts = QUICK_COUNTS if quick else COUNTS
+    seeds = QUICK_SEEDS if quick else SEEDS
+    made = hulls(counts)
+    timed = {
+        aspect_ratio: Timing(made, aspect_ratio, course, rounds, seeds)
+        for aspect_ratio in (QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS)
+    }
+    overall = {
+        name: geometric_mean(timing.ratio(name) for timing in timed.values())
+        for name in made
+    }
+
+    print(
+        f"{course.bodies} ellipses, {backend()} backend: time per step, of that with "
+        f"{VERTICES} vertices and a rounding of {ROUNDING:g}, by rounding"
+    )
+    for aspect_ratio, timing in timed.items():
+        print(f"aspect ratio {aspect_ratio:g}, {timing.milliseconds[CHOSEN]:.3f} ms")
+        print_table({name: timing.ratio(name) for name in made}, counts)
+    print("mean of all aspect ratios")
+    print_table(overall, counts)
+    fastest = min(overall, key=overall.__getitem__)
+    print(f"fastest ({fastest}) to chosen ({CHOSEN}): {overall[fastest]:.3f}")
+    write(timed, out / "hulls.csv")
+    save(draw(timed, overall, counts), out / "hulls.png")
+
+
+def print_table(ratios: dict[str, float], counts: tuple[int, ...]) -> None:
+    """A row for each number of vertices, a column for each rounding."""
+    print("vertices" + "".join(f"{rounding:8g}" for rounding in ROUNDINGS))
+    for count in counts:
+        row = [ratios[kind(count, rounding)] for rounding in ROUNDINGS]
+        print(f"{count:8}" + "".join(f"{ratio:8.3f}" for ratio in row))
+    print(f"{MOMENT}: {ratios[MOMENT]:.3f}")
+
+
+def write(timed: dict[float, Timing], path: Path) -> None:
+    """Save every kind's time, and the lowest and highest ratio of its piles."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(
+            ["aspect ratio", "hull", "ms per step", "ratio", "lowest", "highest"]
         )
-        print(f"aspect ratio {aspect_ratio:g}, {times.milliseconds(chosen):.3f} ms")
-        print("vertices" + "".join(f"{column:>8}" for column in (*ROUNDINGS, MOMENT)))
-        for count in counts:
-            ratios = [
-                times.ratio(kind(count, column), chosen)
-                for column in (*ROUNDINGS, MOMENT)
-            ]
-            print(f"{count:8}" + "".join(f"{ratio:8.3f}" for ratio in ratios))
-    save(draw(raced, counts), out / "hulls.png")
+        for aspect_ratio, timing in timed.items():
+            for name, milliseconds in timing.milliseconds.items():
+                ratios = timing.ratios[name]
+                numbers = timing.ratio(name), min(ratios), max(ratios)
+                table.writerow(
+                    [f"{aspect_ratio:g}", name, f"{milliseconds:.4f}"]
+                    + [f"{number:.3f}" for number in numbers]
+                )
+    print(f"table: {path}")
 
 
-def draw(raced: dict[float, Times], counts: tuple[int, ...]) -> Figure:
-    """A panel of times for each aspect ratio, and what some hulls look like."""
-    figure = Figure(figsize=(3.0 * (len(raced) + 1), 3.8), layout="constrained")
-    shape_axes, *times_axes = figure.subplots(1, len(raced) + 1)
-    columns = [f"{rounding:g}" for rounding in ROUNDINGS] + [MOMENT]
-    chosen = kind(VERTICES, ROUNDING)
-    for axes, (aspect_ratio, times) in zip(times_axes, raced.items(), strict=True):
-        for count in counts:
+def draw(
+    timed: dict[float, Timing], overall: dict[str, float], counts: tuple[int, ...]
+) -> Figure:
+    """What some hulls look like, and a panel of times for each aspect ratio and for their mean."""
+    panels = {
+        f"aspect ratio {aspect_ratio:g}": {n: timing.ratio(n) for n in overall}
+        for aspect_ratio, timing in timed.items()
+    }
+    panels["mean of all"] = overall
+    rows = 2 if len(panels) > 3 else 1
+    columns = (len(panels) + rows) // rows
+    figure = Figure(figsize=(3.1 * columns, 3.2 * rows + 0.5), layout="constrained")
+    shape_axes, *times_axes = figure.subplots(rows, columns).flat
+    for axes, (title, ratios) in zip(times_axes, panels.items(), strict=True):
+        for index, count in enumerate(counts):
             axes.plot(
-                columns,
-                [
-                    times.ratio(kind(count, column), chosen)
-                    for column in (*ROUNDINGS, MOMENT)
-                ],
+                ROUNDINGS,
+                [ratios[kind(count, rounding)] for rounding in ROUNDINGS],
                 marker="o",
+                markersize=4.0,
+                color=f"C{index}",
                 label=f"{count} vertices",
             )
-        axes.axhline(1.0, color="gray", linestyle=":")
-        axes.tick_params(axis="x", labelsize="small")
-        axes.set_xlabel("rounding")
-        axes.set_title(f"aspect ratio {aspect_ratio:g}")
+        axes.axhline(
+            ratios[MOMENT],
+            color="black",
+            linestyle="--",
+            label=f"{VERTICES} vertices for the moment",
+        )
+        axes.axhline(1.0, color="gray", linestyle=":", linewidth=1.0)
+        axes.plot(
+            [ROUNDING],
+            [1.0],
+            marker="o",
+            markersize=11.0,
+            markerfacecolor="none",
+            markeredgecolor=OUTLINE,
+            linestyle="none",
+            label=f"in use: {VERTICES} vertices, {ROUNDING:g}",
+        )
+        axes.set_title(title)
+        axes.set_xlabel("rounding / shorter semi-axis")
         axes.spines[["top", "right"]].set_visible(False)
-    highest = max(axes.get_ylim()[1] for axes in times_axes)
+    limits = [axes.get_ylim() for axes in times_axes]
     for axes in times_axes:
-        axes.set_ylim(0.0, highest)
-    times_axes[0].set_ylabel(f"time per step / {VERTICES} vertices, {ROUNDING:g}")
-    times_axes[0].legend(loc="lower left")
+        axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+    for axes in times_axes[columns - 1 :: columns] if rows > 1 else ():
+        axes.set_ylabel("time per step / that in use")
+    times_axes[0].set_ylabel("time per step / that in use")
+    handles, labels = times_axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
 
     a, b = semi_axes(2.0)
     shown: dict[str, MakeHull] = {
         f"{VERTICES} vertices, 0": partial(rounded_hull, rounding=0.0),
         f"{VERTICES} vertices, {ROUNDING:g}": rounded_hull,
-        f"{VERTICES} vertices, {MOMENT}": hull_with_moment,
+        f"{VERTICES} vertices, moment": hull_with_moment,
     }
     for row, (label, make_hull) in enumerate(shown.items()):
         y = -2.8 * b * row

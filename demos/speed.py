@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -12,77 +13,133 @@ from pymunk_ellipse import Ellipse
 
 from ._box import STEP
 from ._picture import save
-from ._race import Course, Runner, Times, race
+from ._race import Course, Runner, race
 from ._shapes import circle_of_equal_area, inscribed_polygon
 
-A = 14.0
-B = 7.0
+# Semi-axes of aspect ratio 2 and 4, with almost the same area.
+SHAPES = (14.0, 7.0), (20.0, 5.0)
 POLYGONS = 8, 12, 16, 32, 64
 BACKENDS = "python", "compiled"
-YARDSTICKS = "circles", "8-gons", "32-gons"
-SETTLING = 2.0
+YARDSTICKS = "circles", "8-gons", "12-gons", "32-gons"
 
-FULL = Course(500, 30, round(SETTLING / STEP), rounds=40, steps_per_round=6)
-QUICK = Course(100, 12, round(SETTLING / STEP), rounds=10, steps_per_round=4)
+FULL = Course(500, 30, steps_per_round=6)
+QUICK = Course(60, 8, steps_per_round=4)
+ROUNDS = 40
+QUICK_ROUNDS = 8
+# Several piles of each kind, because one may happen to settle with more contacts than others.
+SEEDS = 1, 2, 3
+QUICK_SEEDS = (1,)
 
 
-def runners() -> dict[str, Runner]:
+def runners(a: float, b: float, course: Course) -> dict[str, Runner]:
     """The same pile of each kind of shape."""
-    result = {"circles": Runner(partial(circle_of_equal_area, a=A, b=B), A)}
+    reach = max(a, b)
+    result = {"circles": Runner(partial(circle_of_equal_area, a=a, b=b), reach, course)}
     for n in POLYGONS:
-        result[f"{n}-gons"] = Runner(partial(inscribed_polygon, a=A, b=B, count=n), A)
+        polygon = partial(inscribed_polygon, a=a, b=b, count=n)
+        result[f"{n}-gons"] = Runner(polygon, reach, course)
     for name in BACKENDS:
-        result[f"ellipses ({name})"] = Runner(partial(Ellipse, a=A, b=B), A, name)
+        ellipse = partial(Ellipse, a=a, b=b)
+        result[f"ellipses ({name})"] = Runner(ellipse, reach, course, name)
     return result
 
 
+@dataclass
+class Row:
+    """What is told of a kind of shape: milliseconds per step, and its time by that of each yardstick."""
+
+    milliseconds: float
+    ratios: dict[str, float]
+
+
+Table = dict[str, Row]
+
+
 def run(out: Path, quick: bool) -> None:
-    """Time piles of 500 bodies, or 100 for a quick run, and compare them."""
+    """Time piles of 500 bodies, or 60 for a quick run, and compare them."""
     course = QUICK if quick else FULL
-    times = race(runners(), course)
-    names = list(times.seconds)
-    width = max(map(len, names))
-    print(
-        f"{course.bodies} bodies, a={A:g}, b={B:g}, dt=1/{1 / STEP:.0f}, "
-        f"median of {course.rounds} rounds of {course.steps_per_round} steps"
+    rounds = QUICK_ROUNDS if quick else ROUNDS
+    seeds = QUICK_SEEDS if quick else SEEDS
+    times = race(
+        {
+            (a, b, name, seed): runner
+            for a, b in SHAPES
+            for seed in seeds
+            for name, runner in runners(a, b, replace(course, seed=seed)).items()
+        },
+        rounds,
     )
-    print(f"{'shapes':{width}}  ms/step" + "".join(f"  / {y:8}" for y in YARDSTICKS))
-    with open(out / "speed.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(
-            ["shapes", "ms per step", *(f"ratio to {y}" for y in YARDSTICKS)]
-        )
-        for name in names:
-            milliseconds = times.milliseconds(name)
-            ratios = [times.ratio(name, yardstick) for yardstick in YARDSTICKS]
-            table.writerow([name, f"{milliseconds:.4f}", *(f"{r:.3f}" for r in ratios)])
-            print(
-                f"{name:{width}}  {milliseconds:7.3f}"
-                + "".join(f"  {ratio:10.2f}" for ratio in ratios)
+    tables: dict[tuple[float, float], Table] = {}
+    for a, b in SHAPES:
+        names = [
+            n for n in runners(a, b, course) if (a, b, n, seeds[0]) in times.seconds
+        ]
+        tables[a, b] = {
+            name: Row(
+                times.milliseconds(*((a, b, name, seed) for seed in seeds)),
+                {
+                    yardstick: times.ratio(
+                        ((a, b, name, seed), (a, b, yardstick, seed)) for seed in seeds
+                    )
+                    for yardstick in YARDSTICKS
+                },
             )
-    print(f"table: {out / 'speed.csv'}")
-    save(draw(times, course), out / "speed.png")
-
-
-def draw(times: Times, course: Course) -> Figure:
-    """A bar for each kind of shape."""
-    figure = Figure(figsize=(8.0, 4.0), layout="constrained")
-    axes = figure.subplots()
-    names = list(times.seconds)
-    bars = axes.barh(
-        names,
-        [times.milliseconds(name) for name in names],
-        color=["C1" if name.startswith("ellipses") else "C0" for name in names],
+            for name in names
+        }
+    print(
+        f"{course.bodies} bodies, dt=1/{1 / STEP:.0f}, median of {rounds} rounds of "
+        f"{course.steps_per_round} steps, {len(seeds)} piles of each kind"
     )
-    compared_with = YARDSTICKS[-1]
-    labels = [
-        f"{times.milliseconds(name):.2f} ms, {times.ratio(name, compared_with):.2f} times {compared_with}"
-        for name in names
-    ]
-    axes.bar_label(bars, labels, padding=4)
-    axes.invert_yaxis()
-    axes.margins(x=0.4)
-    axes.set_xlabel("milliseconds per step")
-    axes.set_title(f"a pile of {course.bodies} bodies")
-    axes.spines[["top", "right"]].set_visible(False)
+    for (a, b), table in tables.items():
+        print(f"a={a:g}, b={b:g}")
+        print_table(table)
+    write(tables, out / "speed.csv")
+    save(draw(tables, course), out / "speed.png")
+
+
+def print_table(table: Table) -> None:
+    width = max(map(len, table))
+    print(f"{'shapes':{width}}  ms/step" + "".join(f"  / {y:8}" for y in YARDSTICKS))
+    for name, row in table.items():
+        print(
+            f"{name:{width}}  {row.milliseconds:7.3f}"
+            + "".join(f"  {row.ratios[yardstick]:10.2f}" for yardstick in YARDSTICKS)
+        )
+
+
+def write(tables: dict[tuple[float, float], Table], path: Path) -> None:
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["a", "b", "shapes", "ms per step", *(f"ratio to {y}" for y in YARDSTICKS)]
+        )
+        for (a, b), table in tables.items():
+            for name, row in table.items():
+                ratios = [f"{row.ratios[yardstick]:.3f}" for yardstick in YARDSTICKS]
+                writer.writerow(
+                    [f"{a:g}", f"{b:g}", name, f"{row.milliseconds:.4f}", *ratios]
+                )
+    print(f"table: {path}")
+
+
+def draw(tables: dict[tuple[float, float], Table], course: Course) -> Figure:
+    """A bar for each kind of shape, a panel for each aspect ratio."""
+    figure = Figure(figsize=(8.0, 3.5 * len(tables)), layout="constrained")
+    panels = figure.subplots(len(tables), 1, sharex=True, squeeze=False)
+    for (axes,), ((a, b), table) in zip(panels, tables.items(), strict=True):
+        bars = axes.barh(
+            list(table),
+            [row.milliseconds for row in table.values()],
+            color=["C1" if name.startswith("ellipses") else "C0" for name in table],
+        )
+        labels = [
+            f"{row.milliseconds:.2f} ms, {row.ratios['12-gons']:.2f} times 12-gons"
+            for row in table.values()
+        ]
+        axes.bar_label(bars, labels, padding=4)
+        axes.invert_yaxis()
+        axes.margins(x=0.4)
+        axes.set_title(f"a pile of {course.bodies} bodies, aspect ratio {a / b:g}")
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[-1, 0].set_xlabel("milliseconds per step")
     return figure

@@ -1,0 +1,139 @@
+"""Scenes in which something fails: the ellipse keeps the bound that physics sets, and does not without its safeguards."""
+
+from __future__ import annotations
+
+import pytest
+
+from demos._shapes import inscribed_polygon
+from demos._stability import (
+    SCENES,
+    highest_stack,
+    joined_segments,
+    off_path,
+    rock,
+    seconds_to_turn,
+    softest_mode,
+    stack,
+    tiles,
+)
+from demos._variants import VARIANTS
+from pymunk_ellipse import Ellipse
+
+A, B, _SPIN = 15.0, 10.0, -6.0
+
+
+def polygon(count):
+    return lambda body, a, b: inscribed_polygon(body, a, b, count)
+
+
+def measured(name, make=Ellipse, step=1.0):
+    scene = SCENES[name]
+    return scene.run(make, step * scene.step)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_ellipse_keeps_the_bound(name):
+    assert measured(name) <= SCENES[name].bound
+
+
+@pytest.mark.parametrize(
+    ("name", "variant"),
+    [
+        ("stack that stands", "no warm start"),
+        ("wedge", "no warm start"),
+        ("heavy on light", "no warm start"),
+        ("pile", "no warm start"),
+        ("tiles", "no rolling correction"),
+        ("born overlapped", "no sweep"),
+        ("born overlapped", "published fit"),
+    ],
+)
+def test_bound_is_broken_without_a_safeguard(name, variant):
+    with VARIANTS[variant]():
+        assert not measured(name) <= SCENES[name].bound
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "stack that stands",
+        "stack that falls",
+        "needle on its side",
+        "two needles",
+        "wedge",
+        "heavy on light",
+        "born in one place",
+        "joined segments",
+        "tiles",
+    ],
+)
+def test_bound_is_broken_by_a_polygon(name):
+    assert not measured(name, polygon(16)) <= SCENES[name].bound
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "needle on its tip",
+        "needle on its side",
+        "spinning landing",
+        "closing walls",
+        "pile",
+        "joined segments",
+        "tiles",
+    ],
+)
+def test_bound_is_broken_by_a_large_step(name):
+    assert not measured(name, step=4.0) <= SCENES[name].bound
+
+
+def test_rocking_dies_down_without_the_rolling_correction():
+    with VARIANTS["no rolling correction"]():
+        lost = rock(Ellipse, 1 / 240, 20.0)
+    assert lost > SCENES["rocking for minutes"].bound
+    assert rock(Ellipse, 1 / 240, 20.0) < 1e-3
+
+
+def test_highest_stacks():
+    # a^2 > b^2 for one and a^2 > 3 b^2 for two, by hand.
+    assert highest_stack(1.01, 1.0) == 1
+    assert highest_stack(3**0.5 - 1e-3, 1.0) == 1
+    assert highest_stack(3**0.5 + 1e-3, 1.0) == 2
+    assert [highest_stack(ratio, 1.0) for ratio in (3.0, 5.0, 10.0)] == [3, 5, 12]
+
+
+def test_stack_of_one_rocks_with_the_period_of_an_ellipse():
+    square, tilts, _shifts = softest_mode(1, 20.0, 10.0)
+    # (k^2 + b^2) / (g (a^2/b - b))
+    assert 1 / square == pytest.approx((125 + 100) / (500 * 30))
+    assert tilts == [1.0]
+    # Released at 0.05, with 40-digit quadrature: 0.773639.
+    assert 4 * seconds_to_turn(20.0, 10.0, 0.05, 0.0) == pytest.approx(
+        0.773639, rel=1e-6
+    )
+
+
+def test_highest_stack_stands_and_one_more_falls():
+    a, b = 30.0, 10.0
+    count = highest_stack(a, b)
+    standing = [tilt for _, tilt in stack(Ellipse, 1 / 240, count, a, b, 0.005, 6.0)]
+    falling = [tilt for _, tilt in stack(Ellipse, 1 / 240, count + 1, a, b, 0.005, 6.0)]
+    assert max(standing) < 2.0
+    assert falling[-1] > 10.0
+
+
+@pytest.mark.parametrize("length", [0.5, 1.0, 2.0, 5.0])
+def test_joined_segments_of_any_length_are_one_floor(length):
+    def ground(space):
+        joined_segments(space, length * A)
+
+    assert off_path(Ellipse, 1 / 240, ground) < SCENES["joined segments"].bound
+
+
+def test_joints_of_segments_and_tiles_matter_less_with_shorter_steps():
+    for ground in (joined_segments, tiles):
+        coarse, fine = (
+            off_path(Ellipse, dt, lambda space, ground=ground: ground(space, A), 2.0)
+            for dt in (1 / 240, 1 / 960)
+        )
+        assert fine < coarse / 3.0

@@ -787,11 +787,11 @@ def test_same_events_as_circles(policy, keys, mistakes):
 
 
 def test_pairs_without_an_ellipse_are_untouched():
-    """To the last bit, in the same order, wherever an ellipse is in the same space."""
+    """To the last bit, with an ellipse somewhere in the same space."""
 
     def run(space):
         space.gravity = 0, -500
-        log = []
+        log, separates = [], []
         add_floor(space, elasticity=0.5)
         names = {}
         for i in range(12):
@@ -815,28 +815,29 @@ def test_pairs_without_an_ellipse_are_untouched():
 
         def note(phase, key):
             def callback(arbiter, space, data):
-                points = []
-                if phase != "separate":
-                    points = [
-                        (point.point_a, point.point_b, point.distance)
-                        for point in arbiter.contact_point_set.points
-                    ]
                 pair = tuple(names.get(shape) for shape in arbiter.shapes)
-                log.append(
-                    (phase, key, pair, arbiter.is_first_contact, arbiter.normal, points)
-                )
+                event = phase, key, pair, arbiter.is_first_contact, arbiter.normal
+                if phase == "separate":
+                    # pymunk's own order of pairs follows from addresses here.
+                    separates.append((steps, event))
+                else:
+                    points = arbiter.contact_point_set.points
+                    log.append(
+                        (*event, [(p.point_a, p.point_b, p.distance) for p in points])
+                    )
 
             return callback
 
         for key in [(None, None), (0, None), (0, 1), (1, 0), (0, FLOOR)]:
             for phase in PHASES:
                 space.on_collision(*key, **{phase: note(phase, key)})
-        for _ in range(120):
+        for steps in range(120):  # noqa: B007
             space.step(1 / 120)
-        return log
+        return log, Counter(separates)
 
     expected = run(pymunk.Space())
-    assert {phase for phase, *_ in expected} == set(PHASES)
+    assert {phase for phase, *_ in expected[0]} == set(PHASES[:3])
+    assert len(expected[1]) > 20
     assert run(Space()) == expected
 
 

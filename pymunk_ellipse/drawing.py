@@ -35,24 +35,26 @@ def outline(ellipse: Ellipse, transform: Transform) -> tuple[Vec2d, list[Vec2d]]
     (Vec2d(0.0, 0.0), Vec2d(40.0, 0.0), 71)
     """
     longer, shorter, c, s, x, y = ellipse._placed()
-    long_axis = longer * linear(transform, c, s)
-    short_axis = shorter * linear(transform, -s, c)
+    center = transform @ Vec2d(x, y)
+    long_axis = transform @ Vec2d(x + longer * c, y + longer * s) - center
+    short_axis = transform @ Vec2d(x - shorter * s, y + shorter * c) - center
     if ellipse.a >= ellipse.b:
         a, b = long_axis, short_axis
     else:
         a, b = -short_axis, long_axis
-    center = transform @ Vec2d(x, y)
-    size = max(a.length, b.length)
-    count = vertices_for(size)
+    count = vertices_for(max(a.length, b.length))
     step = 2.0 * pi / count
-    return center, [
-        center + cos(i * step) * a + sin(i * step) * b for i in range(count)
-    ]
-
-
-def linear(transform: Transform, x: float, y: float) -> Vec2d:
-    """The vector (x, y) after a transform, without its translation."""
-    return Vec2d(transform.a * x + transform.c * y, transform.b * x + transform.d * y)
+    vertices = []
+    for i in range(count):
+        cosine = cos(i * step)
+        sine = sin(i * step)
+        vertices.append(
+            Vec2d(
+                center.x + cosine * a.x + sine * b.x,
+                center.y + cosine * a.y + sine * b.y,
+            )
+        )
+    return center, vertices
 
 
 def vertices_for(size: float) -> int:

@@ -22,8 +22,8 @@ from ._pymunk import NO_SPACE
 from .geometry import IDENTITY, Transform, body_transform
 from .hull import Hull, hull_with_moment, rounded_hull
 from .narrowphase.placement import Frame, placed
-from .narrowphase.query import half_extents, nearest_point, segment_hit
-from .queries import updated_transform
+from .narrowphase.query import half_extents, nearest_point, segment_hit, settled
+from .queries import touched_corner, transform_now
 from .resolver import contact_with_ellipse, contact_with_shape
 
 
@@ -300,14 +300,18 @@ class Ellipse(pymunk.Poly):
         if isinstance(b, Ellipse):
             contact = contact_with_ellipse(ellipse, b._placed(), 0.0, 0.0, 0.0)
         elif isinstance(b, pymunk.Shape):
-            contact = contact_with_shape(
-                ellipse, b, body_transform(b) or updated_transform(b), 0.0, 0.0, 0.0
-            )
+            contact = contact_with_shape(ellipse, b, transform_now(b), 0.0, 0.0, 0.0)
         else:
             raise TypeError(f"b must be a pymunk.Shape, got {b!r}")
-        distance, nx, ny, px, py, _evaluations = contact
-        if distance > 0.0:
+        if contact[0] > 0.0:
             return ContactPointSet(Vec2d.zero(), ())
+        if isinstance(b, Ellipse):
+            touched: Frame | None = b._placed()
+        else:
+            touched = touched_corner(ellipse, b, contact)
+        if touched is not None:
+            contact = settled(ellipse, touched, contact)
+        distance, nx, ny, px, py, _evaluations = contact
         normal = Vec2d(nx, ny)
         on_ellipse = Vec2d(ellipse[4] + px, ellipse[5] + py)
         point = ContactPoint(on_ellipse, on_ellipse + distance * normal, distance)

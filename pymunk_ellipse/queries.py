@@ -1,9 +1,9 @@
-"""What a space's queries need besides the ellipse: checked arguments, shapes near a segment, and contacts seen from the other side."""
+"""What queries need besides the ellipse: checked arguments, shapes near a segment, contacts seen from the other side, and where shapes without bodies are."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isnan
+from math import isinf
 from typing import Any
 
 import pymunk
@@ -18,7 +18,16 @@ from ._layout import (
     unproved,
 )
 from ._pymunk import ContactHandler, address, ffi, global_handler
-from .geometry import IDENTITY, Transform
+from .geometry import (
+    IDENTITY,
+    Transform,
+    body_transform,
+    circle_in_world,
+    polygon_in_world,
+    segment_in_world,
+)
+from .narrowphase.ellipse_ellipse import Contact
+from .narrowphase.placement import Frame
 
 # Boxes that cover a segment. More of them hold fewer shapes that are not near it, and each
 # costs a query.
@@ -26,6 +35,9 @@ PIECES = 8
 
 # Boxes are larger by this part of the coordinates, so that roundoff cannot lose a shape.
 MARGIN = 1e-12
+
+# Roundoff of the product of a face's unit normal and a unit vector along it.
+NO_SLOPE = 1e-14
 
 # Bytes from one of a polygon's splitting planes to the next: two vectors.
 PLANE_SIZE = 32
@@ -37,22 +49,27 @@ def has_ellipses(space: pymunk.Space) -> bool:
     return isinstance(handler, ContactHandler) and bool(handler.frames)
 
 
-def max_distance(value: Any) -> float:
-    """value as a distance, which may be negative or infinite."""
-    if value in (float("inf"), float("-inf")):
-        return float(value)
-    return _checks.number("max_distance", value)
+def number_or_infinity(name: str, value: Any) -> float:
+    """value as a float that is not NaN."""
+    if isinstance(value, float) and isinf(value):
+        return value
+    return _checks.number(name, value)
 
 
 def box(value: Any) -> BB:
     """value as a bounding box, which may be infinite."""
     try:
-        numbers = tuple(float(number) for number in value)
-    except (TypeError, ValueError) as error:
+        left, bottom, right, top = value
+    except TypeError as error:
         raise TypeError(f"bb must be four numbers, got {value!r}") from error
-    if len(numbers) != 4 or any(isnan(number) for number in numbers):
-        raise ValueError(f"bb must be four numbers, got {value!r}")
-    return BB(*numbers)
+    except ValueError as error:
+        raise ValueError(f"bb must be four numbers, got {value!r}") from error
+    return BB(
+        number_or_infinity("bb.left", left),
+        number_or_infinity("bb.bottom", bottom),
+        number_or_infinity("bb.right", right),
+        number_or_infinity("bb.top", top),
+    )
 
 
 def shapes_along(
@@ -97,12 +114,15 @@ def mirrored(contact: ContactPointSet) -> ContactPointSet:
     )
 
 
-def updated_transform(shape: Shape) -> Transform:
-    """Where update has put one of pymunk's shapes that has no body, if that was a rotation and a translation.
+def transform_now(shape: Shape) -> Transform:
+    """Where one of pymunk's shapes is: with its body, or without one where update has put it, if that was a rotation and a translation.
 
-    pymunk does not tell: it is read from the shape's struct. Where structs are not as known,
-    and before any update, the shape is at the origin.
+    Of the latter pymunk does not tell, and it is read from the shape's struct. Where structs
+    are not as known, and before any update, the shape is at the origin.
     """
+    on_body = body_transform(shape)
+    if on_body is not None:
+        return on_body
     if unproved() is not None or shape.bb == BB():
         return IDENTITY
     pointer = address(shape._shape)
@@ -128,6 +148,30 @@ def updated_transform(shape: Shape) -> Transform:
         rotation = Vec2d(1.0, 0.0)
     origin = first_now - first.cpvrotate(rotation)
     return origin.x, origin.y, rotation.x, rotation.y
+
+
+def touched_corner(ellipse: Frame, shape: Shape, contact: Contact) -> Frame | None:
+    """The circle that one of pymunk's shapes is where it touches an ellipse, None if that is a face."""
+    transform = transform_now(shape)
+    if isinstance(shape, pymunk.Circle):
+        x, y, radius = circle_in_world(shape._shape, transform)
+        return radius, radius, 1.0, 0.0, x, y
+    if isinstance(shape, pymunk.Segment):
+        ends, _tangents, radius = segment_in_world(shape._shape, transform)
+        corners = [Vec2d(*ends[:2]), Vec2d(*ends[2:])]
+    else:
+        planes, count, radius = polygon_in_world(shape._shape, transform)
+        corners = [Vec2d(*planes[4 * i : 4 * i + 2]) for i in range(count)]
+    distance, nx, ny, px, py, _evaluations = contact
+    normal = Vec2d(nx, ny)
+    inner = Vec2d(ellipse[4] + px, ellipse[5] + py) + (distance + radius) * normal
+    i = min(range(len(corners)), key=lambda i: inner.get_distance_squared(corners[i]))
+    corner = corners[i]
+    for neighbor in (corners[i - 1], corners[(i + 1) % len(corners)]):
+        face = neighbor - corner
+        if abs(face.dot(normal)) <= NO_SLOPE * face.length:
+            return None
+    return radius, radius, 1.0, 0.0, corner.x, corner.y
 
 
 def _point(place: int) -> Vec2d:

@@ -61,7 +61,7 @@ class Space(EventSpace):
         if not queries.has_ellipses(self):
             return super().point_query(point, max_distance, shape_filter)
         point = _checks.point("point", point)
-        max_distance = queries.max_distance(max_distance)
+        max_distance = queries.number_or_infinity("max_distance", max_distance)
         # A hull contains its ellipse: its distance is smaller everywhere, inside and out, so
         # none is missed.
         found = []
@@ -77,6 +77,10 @@ class Space(EventSpace):
         self, point: tuple[float, float], max_distance: float, shape_filter: ShapeFilter
     ) -> PointQueryInfo | None:
         """The shape nearest to the point, if nearer than max_distance; see :py:meth:`point_query`."""
+        if not queries.has_ellipses(self):
+            return super().point_query_nearest(point, max_distance, shape_filter)
+        point = _checks.point("point", point)
+        max_distance = queries.number_or_infinity("max_distance", max_distance)
         nearest = super().point_query_nearest(point, max_distance, shape_filter)
         # If the nearest of shapes and hulls is a shape, ellipses are farther away still.
         if nearest is None or not isinstance(nearest.shape, Ellipse):
@@ -113,12 +117,12 @@ class Space(EventSpace):
         >>> hit.point, hit.normal, hit.alpha
         (Vec2d(0.0, 10.0), Vec2d(0.0, 1.0), 0.4)
         """
-        found = super().segment_query(start, end, radius, shape_filter)
         if not queries.has_ellipses(self):
-            return found
+            return super().segment_query(start, end, radius, shape_filter)
         start = _checks.point("start", start)
         end = _checks.point("end", end)
         radius = _checks.number("radius", radius)
+        found = super().segment_query(start, end, radius, shape_filter)
         hits = {}
         for _, shape in queries.shapes_along(self, start, end, radius, shape_filter):
             if isinstance(shape, Ellipse):
@@ -143,14 +147,15 @@ class Space(EventSpace):
 
         One that it touches only at the end does not count, as in pymunk.
         """
-        first = super().segment_query_first(start, end, radius, shape_filter)
         if not queries.has_ellipses(self):
-            return first
+            return super().segment_query_first(start, end, radius, shape_filter)
         start = _checks.point("start", start)
         end = _checks.point("end", end)
         radius = _checks.number("radius", radius)
-        if first is not None and isinstance(first.shape, Ellipse):
-            # pymunk's first of the other shapes may be behind it.
+        first = super().segment_query_first(start, end, radius, shape_filter)
+        if radius > 0.0 or (first is not None and isinstance(first.shape, Ellipse)):
+            # The first of the other shapes may be behind the hull, and pymunk may overlook it
+            # for its radius.
             first = min(
                 (
                     hit

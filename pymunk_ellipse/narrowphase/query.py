@@ -1,9 +1,11 @@
-"""Queries of one ellipse: its nearest point to a point, where a moving circle first touches it, and its bounding box."""
+"""Queries of an ellipse: its nearest point to a point, where a moving circle first touches it, its bounding box, and contacts to the last digit."""
 
 from __future__ import annotations
 
 from math import copysign, hypot, sqrt
 
+from .common_normal import fitted_circles
+from .ellipse_ellipse import Contact
 from .placement import Frame
 
 # Signed distance (negative inside), outward normal (x, y) and nearest point of the surface (x, y).
@@ -18,6 +20,11 @@ ROUNDOFF = 4e-16
 # Bounds on the loops: six and ten steps are usual, 46 were seen for points at the centre of
 # curvature of a sharp end, and as many for segments that graze.
 MAX_STEPS = 100
+
+# A contact to be settled is at most this far from where it should be (radians), ten times what
+# the climb leaves, and its distance by this part of the longer semi-axis.
+LARGEST_TURN = 1e-5
+LARGEST_CHANGE = 1e-9
 
 # From this many semi-axes away an ellipse is a point to double precision.
 FAR = 1e100
@@ -223,3 +230,40 @@ def half_extents(ellipse: Frame) -> tuple[float, float]:
     """
     a, b, c, s, _x, _y = ellipse
     return hypot(a * c, b * s), hypot(a * s, b * c)
+
+
+def settled(ellipse: Frame, other: Frame, contact: Contact) -> Contact:
+    """The contact of two ellipses with the last steps of Newton's method, which the climb leaves out.
+
+    The climb ends when the distance is settled, whose error is the square of the normal's;
+    after this the normal and the point are as exact. other may be a circle, or the round
+    corner of a shape that is touched there. A contact that is not near one of these two comes
+    back as it was.
+    """
+    a1, b1, c1, s1, x1, y1 = ellipse
+    a2, b2, c2, s2, x2, y2 = other
+    dx = x2 - x1
+    dy = y2 - y1
+    c = c1 * c2 + s1 * s2
+    s = c1 * s2 - s1 * c2
+    pair = (a1, b1, a2, b2, c, s, c1 * dx + s1 * dy, c1 * dy - s1 * dx)
+    distance, nx, ny, _px, _py, evaluations = contact
+    mx = c1 * nx + s1 * ny
+    my = c1 * ny - s1 * nx
+    for _ in range(2):
+        f, slope, between, mx, my, px, py = fitted_circles(pair, mx, my)
+        if not abs(slope) <= LARGEST_TURN * between:
+            return contact
+        turn = slope / between if between > 0.0 else 0.0
+        mx, my = mx - turn * my, my + turn * mx
+    f, _slope, _between, mx, my, px, py = fitted_circles(pair, mx, my)
+    if abs(f - distance) > LARGEST_CHANGE * a1:
+        return contact
+    return (
+        f,
+        c1 * mx - s1 * my,
+        s1 * mx + c1 * my,
+        c1 * px - s1 * py,
+        s1 * px + c1 * py,
+        evaluations + 3,
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import acos, ceil, cos, pi, sin
+from math import asin, ceil, cos, pi, sin, sqrt
 from types import TracebackType
 from typing import Any
 
@@ -60,12 +60,14 @@ def outline(ellipse: Ellipse, transform: Transform) -> tuple[Vec2d, list[Vec2d]]
 def vertices_for(size: float) -> int:
     """How many vertices the outline of an ellipse needs whose longer semi-axis is size on the screen.
 
-    An edge that spans the angle 2 phi of a circle lies 1 - cos(phi) of its radius inside.
+    In the middle, an edge that spans the angle 2 phi of a circle lies 1 - cos(phi) of the
+    radius inside.
     """
     bulge = LARGEST_RELATIVE_BULGE
     if bulge * size > LARGEST_BULGE:
         bulge = LARGEST_BULGE / size
-    return min(ceil(pi / acos(1.0 - bulge)), MOST_VERTICES)
+    phi = 2.0 * asin(sqrt(bulge / 2.0))
+    return min(ceil(pi / phi), MOST_VERTICES)
 
 
 class TrueOutlines:

@@ -1,6 +1,7 @@
 """Small scenes that several tests run, and what to measure in them."""
 
 import itertools
+from functools import cache
 from math import cos, pi, sin, sqrt
 
 import pymunk
@@ -87,6 +88,27 @@ def contacts(space):
 
     space.on_collision(post_solve=note)
     return seen
+
+
+@cache
+def data_in_a_copy():
+    """The data {"from": "the user"} of a handler, as a callback gets it in a copy of a space with two circles.
+
+    Before 7.3.1 pymunk copied handlers without their data, and with it goes the one contact
+    that comes to a copy that way.
+    """
+    space = make_space()
+    space.add(*(pymunk.Circle(add_body(space, mass=1, moment=1), 1) for _ in range(2)))
+    space.on_collision(pre_solve=_note_data, data={"from": "the user"})
+    space.copy().step(1 / 120)
+    return _noted.pop()
+
+
+_noted = []
+
+
+def _note_data(arbiter, space, data):
+    _noted.append(data)
 
 
 def kinetic_energy_per_mass(space):

@@ -2,7 +2,6 @@
 
 import copy
 import pickle
-from functools import cache
 
 import pymunk
 import pytest
@@ -12,6 +11,7 @@ from scenes import (
     add_ellipse,
     add_floor,
     contacts,
+    data_in_a_copy,
     kinetic_energy_per_mass,
     make_space,
 )
@@ -63,22 +63,6 @@ def step(space, count):
 
 def places(space):
     return [(*body.position, body.angle) for body in space.bodies]
-
-
-@cache
-def data_in_a_copy():
-    """The data that a callback for two circles gets in a copy of their space.
-
-    Before 7.3.1 pymunk copied callbacks without it, and with it goes the one contact that
-    comes to a copy that way.
-    """
-    space = make_space()
-    space.add(*(pymunk.Circle(add_body(space, mass=1, moment=1), 1) for _ in range(2)))
-    space.on_collision(pre_solve=note_pre_solve, data={"from": "the user"})
-    space.copy().step(1 / 120)
-    ((_name, data),) = calls
-    calls.clear()
-    return data
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pymunk
 import pytest
-from scenes import FLOOR, add_body, add_ellipse, add_floor
+from scenes import FLOOR, add_body, add_ellipse, add_floor, data_in_a_copy
 
 import pymunk_ellipse
 from pymunk_ellipse import Ellipse
@@ -40,6 +40,11 @@ MISSED = pytest.mark.xfail(
 HULLS_NORMAL = pytest.mark.xfail(
     strict=True,
     reason="arbiter.normal in separate is that of the hulls, still overlapping",
+)
+LOST = pytest.mark.xfail(
+    not data_in_a_copy(),
+    strict=True,
+    reason="where pymunk does not copy the data of handlers, one pair of a copy begins again",
 )
 
 WAYS = [
@@ -1160,6 +1165,7 @@ NOTES = {
 }
 
 
+@LOST
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("key", [(None, None), (1, None), (1, 2), (2, 1)])
 def test_copies_go_on_with_their_own_events(way, key):

@@ -27,6 +27,9 @@ PHASES = ("begin", "pre_solve", "post_solve", "separate")
 
 NULL = ffi.NULL
 
+# Chipmunk's wildcard for a collision type.
+_ANY_TYPE = int(ffi.cast("uintptr_t", ~0))
+
 _NOTHING = ffi.addressof(lib, "DoNothing")
 
 # What a shape without a space refers to.
@@ -196,6 +199,7 @@ class ContactHandler(ChainedHandler):
         self.compiled: Any | None = None
         # Until the first contact of the space, which may be a copy of one at work.
         self.adopts = True
+        self._adopted: list[Any] = []
         super().__init__(handler, space)
         self._data[SavedContacts] = SavedContacts(space)
 
@@ -238,28 +242,27 @@ class ContactHandler(ChainedHandler):
             self.python(self.frames, arbiter)
 
     def adopt_contacts(self, current: Any) -> None:
-        """Take over the contacts of a space that this one is a copy of, when the first of them is resolved.
+        """Take over the contacts of a space that this one is a copy of, when the first of them is at hand.
 
-        pymunk restores arbiters with their contacts and impulses, but not with the data that
-        points to them. The contact of the arbiter at hand is gone already and comes from
-        SavedContacts.
+        pymunk restores arbiters with their contacts, but not with the data that points to them,
+        and the contact of the arbiter at hand is gone already.
         """
         self.adopts = False
         self.wire()
+        saved = self._data[SavedContacts].by_pair()
         for arbiter in self._space._get_arbiters():
-            if arbiter.data or arbiter.state != NORMAL:
-                continue
-            if arbiter.a not in self.frames and arbiter.b not in self.frames:
-                continue
-            if arbiter == current:
-                saved = self._data[SavedContacts].find(
-                    shape_at(arbiter.a), shape_at(arbiter.b)
-                )
-                if saved is not None:
-                    self._first_contact = ffi.new("struct cpContact *", saved)
-                    self._first_contact.hash = contact_name(arbiter)
-                    arbiter.data = self._first_contact
-            elif arbiter.count > 0:
+            contact = saved.get((address(arbiter.a), address(arbiter.b)))
+            if contact is not None:
+                arbiter.data = adopted = ffi.new("struct cpContact *", contact)
+                adopted.hash = contact_name(arbiter)
+                self._adopted.append(adopted)
+            elif (
+                # A pymunk that does not copy a handler's data.
+                not saved
+                and arbiter != current
+                and arbiter.count > 0
+                and (arbiter.a in self.frames or arbiter.b in self.frames)
+            ):
                 arbiter.contacts[0].hash = contact_name(arbiter)
                 arbiter.data = arbiter.contacts
 
@@ -286,14 +289,14 @@ class SavedContacts:
         self._space = weakref.ref(space)
         self._contacts: list[tuple[Shape, Shape, dict[str, Any]]] = []
 
-    def find(self, a: Shape, b: Shape) -> dict[str, Any] | None:
-        """The contact of two shapes when the copy was made, None if they did not touch."""
+    def by_pair(self) -> dict[tuple[int, int], dict[str, Any]]:
+        """The contacts by the addresses of the two shapes, in either order."""
+        pairs = {}
         for first, second, contact in self._contacts:
-            if first is a and second is b:
-                return contact
-            if first is b and second is a:
-                return {**contact, "r1": contact["r2"], "r2": contact["r1"]}
-        return None
+            a, b = address(first._shape), address(second._shape)
+            pairs[a, b] = contact
+            pairs[b, a] = {**contact, "r1": contact["r2"], "r2": contact["r1"]}
+        return pairs
 
     def __getstate__(self) -> list[tuple[Shape, Shape, dict[str, Any]]]:
         space = self._space()
@@ -303,10 +306,10 @@ class SavedContacts:
             (
                 shape_at(arbiter.a),
                 shape_at(arbiter.b),
-                _contact_to_dict(arbiter.contacts[0]),
+                _contact_to_dict(contact_at(arbiter.data)),
             )
             for arbiter in space._get_arbiters()
-            if arbiter.data and arbiter.count > 0
+            if arbiter.data and arbiter.state < CACHED
         ]
 
     def __setstate__(self, contacts: list[tuple[Shape, Shape, dict[str, Any]]]) -> None:
@@ -344,7 +347,13 @@ def install(
 def call_all_handlers(
     phase: str, arbiter: Any, space: Space, last: ContactHandler
 ) -> None:
-    """Call the callbacks for a phase of all handlers of an arbiter, as Chipmunk does (cpSpaceCollideShapes)."""
+    """Call the callbacks for a phase of all handlers of an arbiter, as Chipmunk does (cpSpaceCollideShapes).
+
+    This may be called while it calls one of them, with the shapes swapped for that one.
+    """
+    swapped = arbiter.swapped
+    first = arbiter.handlerAB.typeA
+    arbiter.swapped = first not in (lib.cpShapeGetCollisionType(arbiter.a), _ANY_TYPE)
     function = {"begin": "beginFunc", "separate": "separateFunc"}[phase]
     handlers = (
         arbiter.handlerAB,
@@ -360,3 +369,4 @@ def call_all_handlers(
         getattr(handler, function)(arbiter, space._space, handler.userData)
         if swaps:
             arbiter.swapped = not arbiter.swapped
+    arbiter.swapped = swapped

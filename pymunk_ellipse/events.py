@@ -25,22 +25,22 @@ from .resolver import pre_solve
 
 
 class Touches:
-    """Which pairs with an ellipse touch, as the user has been told.
+    """Tells the user when pairs with an ellipse begin and cease to touch.
 
     Chipmunk calls begin and separate when hulls begin and cease to overlap. The first callback
     that it calls for a pair in a step resolves the contact here, and tells the user of a touch
-    that begins or ends by calling the handlers again, as Chipmunk would.
+    that begins or ends by calling the handlers again, as Chipmunk would. Whether two touched in
+    the last step is seen from the arbiter's data, see resolver.pre_solve.
     """
 
     def __init__(self, contacts: ContactHandler) -> None:
         self.contacts = contacts
-        self.touching: set[Any] = set()
-        # Whether any callback depends on it.
-        self.listened = False
         # Whether a call comes from here, rather than from Chipmunk.
         self.telling = False
         # The pair that was resolved last in this step.
         self.current: Any = None
+        # The first shape and the normal (x, y) of pairs when they touched last.
+        self.normals: dict[Any, tuple[Any, float, float]] = {}
 
     def with_ellipse(self, arbiter: Any) -> bool:
         """Whether an arbiter's contact is resolved here."""
@@ -51,23 +51,29 @@ class Touches:
         """Whether the two shapes touch, after telling of it if that is new."""
         if arbiter != self.current:
             self.current = arbiter
+            if self.contacts.adopts:
+                self.contacts.adopt_contacts(arbiter)
+            touched = arbiter.data and arbiter.state != FIRST_COLLISION
             self.contacts.resolve(arbiter)
-            if not self.listened:
-                return bool(arbiter.state != IGNORE)
             if arbiter.state == IGNORE:
-                if arbiter in self.touching:
+                if touched:
                     self._part(arbiter, space)
-            elif arbiter not in self.touching:
-                self.touching.add(arbiter)
-                # Otherwise the two touched before anybody listened, or before the space was copied.
+            else:
+                normal = arbiter.n
+                self.normals[arbiter] = arbiter.a, normal.x, normal.y
                 if arbiter.state == FIRST_COLLISION:
                     self._tell("begin", arbiter, space)
-        return arbiter in self.touching
+        return bool(arbiter.state != IGNORE)
 
     def _part(self, arbiter: Any, space: pymunk.Space) -> None:
-        self.touching.discard(arbiter)
-        # As it is when Chipmunk calls separate: without contact points.
+        # As it is when Chipmunk calls separate: without contact points, and with the normal of
+        # the last touch.
         arbiter.state = CACHED
+        shape, nx, ny = self.normals.pop(arbiter, (arbiter.a, None, None))
+        if nx is not None and ny is not None:
+            sign = 1.0 if shape == arbiter.a else -1.0
+            arbiter.n.x = sign * nx
+            arbiter.n.y = sign * ny
         self._tell("separate", arbiter, space)
         arbiter.state = IGNORE
         # What a callback set lasts until the two part.
@@ -106,16 +112,10 @@ class _EventDispatcher(Dispatcher):
         exact = any(
             isinstance(_pymunk.shape_at(shape), Ellipse) for shape in (pair.a, pair.b)
         )
-        if touches.telling or not exact or pair in touches.touching:
+        if exact and touches.contacts.adopts:
+            touches.contacts.adopt_contacts(pair)
+        if touches.telling or not exact or pair.data:
             super()._separate(arbiter, space, data)
-
-
-class _LastDispatcher(_EventDispatcher):
-    """The dispatcher of the global handler, which Chipmunk calls last."""
-
-    def _separate(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
-        super()._separate(arbiter, space, data)
-        self._touches.touching.discard(arbiter._arbiter)
 
 
 def listens(handler: CollisionHandler) -> bool:
@@ -146,15 +146,11 @@ class GlobalEventHandler(ContactHandler):
 
     def make_dispatcher(self) -> Dispatcher:
         self.touches = Touches(self)
-        return _LastDispatcher(self, self.touches)
+        return _EventDispatcher(self, self.touches)
 
     def wire(self) -> None:
         super().wire()
         self.call_resolve(listens(self))
-        self.touches.listened = any(map(listens, self._space._handlers.values()))
-        self.call_separate(self.touches.listened)
-        if not self.touches.listened:
-            self.touches.touching.clear()
 
 
 class EventSpace(pymunk.Space):
@@ -192,7 +188,6 @@ class EventSpace(pymunk.Space):
             separate,
             data,
         )
-        self._touches.contacts.wire()
 
     def _event_handler(self, handler: Any, space: pymunk.Space) -> EventHandler:
         return EventHandler(handler, space, self._touches)

@@ -24,23 +24,7 @@ Space = getattr(pymunk_ellipse, "Space", EventSpace)
 PHASES = ("begin", "pre_solve", "post_solve", "separate")
 KEYS = [(None, None), (1, None), (2, None), (1, 1), (1, 2), (2, 1), (2, 2)]
 
-# Known faults of the package.
-ORDER = pytest.mark.xfail(
-    strict=True,
-    reason="shapes are swapped in a begin or separate that is told from the handler of (b, a) or (b, None)",
-)
-ERROR_KEEPS = pytest.mark.xfail(
-    strict=True,
-    reason="an error in the separate of (None, None) leaves the pair among those that touch",
-)
-MISSED = pytest.mark.xfail(
-    strict=True,
-    reason="two that touched before any callback was set, or in the space that was copied, part without a separate",
-)
-HULLS_NORMAL = pytest.mark.xfail(
-    strict=True,
-    reason="arbiter.normal in separate is that of the hulls, still overlapping",
-)
+# What pymunk loses in a copy.
 LOST = pytest.mark.xfail(
     not data_in_a_copy(),
     strict=True,
@@ -232,10 +216,10 @@ def solved(pair):
     "keys",
     [
         [(None, None)],
-        pytest.param(KEYS, marks=ORDER),
-        pytest.param([(1, None)], marks=ORDER),
-        pytest.param([(2, 1)], marks=ORDER),
-        pytest.param([(2, 2), (1, 2)], marks=ORDER),
+        KEYS,
+        [(1, None)],
+        [(2, 1)],
+        [(2, 2), (1, 2)],
     ],
     ids=str,
 )
@@ -508,9 +492,7 @@ def test_touching_again_after_some_steps(steps):
     [
         *((phase, [(None, None)]) for phase in PHASES),
         *(
-            pytest.param(
-                phase, keys, marks=ORDER if phase in ("begin", "separate") else ()
-            )
+            (phase, keys)
             for phase in PHASES
             for keys in ([(1, None), (2, None)], [(1, 2), (2, 1)])
         ),
@@ -544,7 +526,6 @@ def test_a_single_callback(phase, keys):
             seen.clear()
 
 
-@HULLS_NORMAL
 def test_separate_has_the_normal_of_the_last_touch():
     """As in pymunk, where two that part have no new contact."""
     for which in range(10):
@@ -768,11 +749,11 @@ SOME_KEYS = [[(2, 1)], [(1, None), (2, None)], [(1, 2), (2, 2)]]
 
 
 PLAYS = [
-    *(pytest.param(policy, KEYS, marks=ORDER) for policy in POLICIES),
+    *((policy, KEYS) for policy in POLICIES),
     *((policy, [(None, None)]) for policy in POLICIES[:-3]),
     ("toggle sensors", [(None, None)]),
-    pytest.param("errors", [(None, None)], marks=ERROR_KEEPS),
-    *(pytest.param("nothing", keys, marks=ORDER) for keys in SOME_KEYS),
+    ("errors", [(None, None)]),
+    *(("nothing", keys) for keys in SOME_KEYS),
 ]
 
 
@@ -927,7 +908,7 @@ LEAVING = [
 @pytest.mark.parametrize("leave", LEAVING)
 @pytest.mark.parametrize(
     ("heard", "again"),
-    [(True, 0), (True, 1), (False, 1), pytest.param(False, 0, marks=MISSED)],
+    [(True, 0), (True, 1), (False, 1), (False, 0)],
 )
 @pytest.mark.parametrize("phases", [PHASES, ("separate",)], ids=str)
 def test_callbacks_set_while_two_touch(phases, heard, again, leave):
@@ -1003,8 +984,7 @@ def test_shapes_added_in_a_callback(phase):
     ("phase", "key"),
     [
         *itertools.product(PHASES, [(1, 2), (2, None)]),
-        *((phase, (None, None)) for phase in PHASES[:3]),
-        pytest.param("separate", (None, None), marks=ERROR_KEEPS),
+        *((phase, (None, None)) for phase in PHASES),
     ],
 )
 def test_errors_in_callbacks(phase, key, mistakes, monkeypatch, capfd):
@@ -1202,7 +1182,6 @@ def test_copies_go_on_with_their_own_events(way, key):
     assert phases_of(seen) == ["separate"]
 
 
-@MISSED
 @pytest.mark.parametrize("way", WAYS)
 def test_copy_of_two_that_touch_ends_the_touch(way):
     """Also if they part, or one goes, before the copy has made a step with them touching."""

@@ -241,8 +241,10 @@ class Ellipse(pymunk.Poly):
         >>> hit.point, hit.distance, hit.gradient
         (Vec2d(0.0, 1.0), 3.0, Vec2d(0.0, 1.0))
         """
-        x, y = _checks.point("p", p)
-        distance, nx, ny, px, py = nearest_point(self._placed(), x, y)
+        return self._nearest(_checks.point("p", p))
+
+    def _nearest(self, p: Vec2d) -> PointQueryInfo:
+        distance, nx, ny, px, py = nearest_point(self._placed(), p.x, p.y)
         return PointQueryInfo(self, Vec2d(px, py), distance, Vec2d(nx, ny))
 
     def segment_query(
@@ -266,12 +268,14 @@ class Ellipse(pymunk.Poly):
         >>> hit.point, hit.normal, hit.alpha
         (Vec2d(0.0, 1.0), Vec2d(0.0, 1.0), 0.5)
         """
-        hit = segment_hit(
-            self._placed(),
-            *_checks.point("start", start),
-            *_checks.point("end", end),
+        return self._hit(
+            _checks.point("start", start),
+            _checks.point("end", end),
             _checks.number("radius", radius),
         )
+
+    def _hit(self, start: Vec2d, end: Vec2d, radius: float) -> SegmentQueryInfo | None:
+        hit = segment_hit(self._placed(), start.x, start.y, end.x, end.y, radius)
         if hit is None:
             return None
         alpha, nx, ny, px, py = hit

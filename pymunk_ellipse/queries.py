@@ -29,9 +29,10 @@ from .geometry import (
 from .narrowphase.ellipse_ellipse import Contact
 from .narrowphase.placement import Frame
 
-# Boxes that cover a segment. More of them hold fewer shapes that are not near it, and each
-# costs a query.
-PIECES = 8
+# A segment is covered by a box for each so many lengths of the first ellipse's longer semi-axis,
+# but not more than this. More of them hold fewer shapes that are not near it, and each costs a query.
+PIECE = 4.0
+MOST_PIECES = 16
 
 # Boxes are larger by this part of the coordinates, so that roundoff cannot lose a shape.
 MARGIN = 1e-12
@@ -45,8 +46,12 @@ PLANE_SIZE = 32
 
 def has_ellipses(space: pymunk.Space) -> bool:
     """Whether there are ellipses in a space."""
+    return bool(_frames(space))
+
+
+def _frames(space: pymunk.Space) -> dict[Any, Frame]:
     handler = global_handler(space)
-    return isinstance(handler, ContactHandler) and bool(handler.frames)
+    return handler.frames if isinstance(handler, ContactHandler) else {}
 
 
 def number_or_infinity(name: str, value: Any) -> float:
@@ -79,7 +84,7 @@ def shapes_along(
     radius: float,
     shape_filter: ShapeFilter,
 ) -> Iterator[tuple[float, Shape]]:
-    """Every shape that a circle of the given radius may touch on its way from start to end, and a few more.
+    """Every shape in a space with ellipses that a circle of the given radius may touch on its way from start to end, and a few more.
 
     Each comes with a part of the way, 0 to 1, before which neither it nor any that follow can
     be touched. pymunk's segment query does not serve for this: Chipmunk looks for shapes whose
@@ -89,7 +94,8 @@ def shapes_along(
     seen = set()
     size = max(abs(start.x), abs(start.y), abs(end.x), abs(end.y))
     reach = max(radius, 0.0) + MARGIN * size
-    pieces = PIECES if start != end else 1
+    typical = next(iter(_frames(space).values()))[0]
+    pieces = int(min(1.0 + abs(end - start) / (PIECE * typical), MOST_PIECES))
     for i in range(pieces):
         reached = i / pieces
         near = start.interpolate_to(end, reached)

@@ -67,7 +67,7 @@ class Space(EventSpace):
         found = []
         for hit in super().point_query(point, max_distance, shape_filter):
             if isinstance(hit.shape, Ellipse):
-                hit = hit.shape.point_query(point)
+                hit = hit.shape._nearest(point)
                 if not hit.distance < max_distance:
                     continue
             found.append(hit)
@@ -85,7 +85,7 @@ class Space(EventSpace):
         # If the nearest of shapes and hulls is a shape, ellipses are farther away still.
         if nearest is None or not isinstance(nearest.shape, Ellipse):
             return nearest
-        nearest = nearest.shape.point_query(point)
+        nearest = nearest.shape._nearest(point)
         limit = min(nearest.distance, max_distance)
         nearer = self.point_query(point, limit, shape_filter)
         return min(
@@ -126,7 +126,7 @@ class Space(EventSpace):
         hits = {}
         for _, shape in queries.shapes_along(self, start, end, radius, shape_filter):
             if isinstance(shape, Ellipse):
-                hit = shape.segment_query(start, end, radius)
+                hit = shape._hit(start, end, radius)
                 if hit is not None:
                     hits[shape] = hit
         # Each in its hull's place, and those without at the end.
@@ -172,7 +172,7 @@ class Space(EventSpace):
             if reached >= alpha:
                 break
             if isinstance(shape, Ellipse):
-                hit = shape.segment_query(start, end, radius)
+                hit = shape._hit(start, end, radius)
                 if hit is not None and hit.alpha < alpha:
                     first = hit
                     alpha = hit.alpha

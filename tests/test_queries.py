@@ -569,6 +569,16 @@ def test_deep_points_of_a_hull_are_not_deep_in_the_ellipse():
     assert space.point_query_nearest((0, 9), -0.95, ALL).distance == -1
 
 
+def test_the_maximal_distance_itself_is_too_far():
+    space = Space()
+    egg = Ellipse(space.static_body, 4, 2)
+    space.add(egg)
+    assert egg.point_query((6, 0)).distance == 2
+    for limit, found in ((2, 0), (2.001, 1)):
+        assert len(space.point_query((6, 0), limit, ALL)) == found
+        assert bool(space.point_query_nearest((6, 0), limit, ALL)) == found
+
+
 def test_the_nearest_is_not_the_one_with_the_nearest_hull():
     space = Space()
     egg = Ellipse(space.static_body, 20, 10)

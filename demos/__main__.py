@@ -8,25 +8,36 @@ from importlib import import_module
 from pathlib import Path
 
 
-def demos() -> dict[str, str]:
-    """The first line of each demo's docstring, by the demo's name."""
+HERE = Path(__file__).parent
+
+
+def purposes(directory: Path) -> dict[str, str]:
+    """The first line of the docstring of each module in a directory, by the module's name."""
     found = {}
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        if not path.stem.startswith("_"):
-            # Parsed, not imported, so that the list needs none of what the demos need.
-            docstring = ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
-            found[path.stem] = docstring.partition("\n")[0]
+    for path in sorted(directory.glob("[!_]*.py")):
+        # Parsed, not imported, so that the list needs none of what the demos need.
+        docstring = ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
+        found[path.stem] = docstring.partition("\n")[0]
     return found
 
 
 def main() -> None:
-    found = demos()
+    demos = purposes(HERE)
+    scenes = purposes(HERE / "scenes")
     parser = argparse.ArgumentParser(
         prog="python -m demos",
         description="Run a demo: it prints its key numbers and leaves a picture.",
     )
-    parser.add_argument("name", nargs="?", choices=found, help="the demo to run")
-    parser.add_argument("--list", action="store_true", help="list the demos and stop")
+    parser.add_argument(
+        "name",
+        nargs="?",
+        choices=[*demos, *scenes],
+        metavar="NAME",
+        help="the demo or scene to run, see --list",
+    )
+    parser.add_argument(
+        "--list", action="store_true", help="list demos and scenes, and stop"
+    )
     parser.add_argument(
         "--out",
         type=Path,
@@ -37,16 +48,29 @@ def main() -> None:
     parser.add_argument(
         "--quick", action="store_true", help="a smaller run, in seconds"
     )
+    parser.add_argument(
+        "--window", action="store_true", help="open a scene in a pygame window instead"
+    )
     arguments = parser.parse_args()
+    name = arguments.name
     if arguments.list:
-        width = max(map(len, found))
-        for name, purpose in found.items():
-            print(f"{name:{width}}  {purpose}")
-    elif arguments.name is None:
+        width = max(map(len, [*demos, *scenes]))
+        for title, modules in ("Demos", demos), ("Scenes of the gallery", scenes):
+            print(f"{title}:")
+            for module, purpose in modules.items():
+                print(f"  {module:{width}}  {purpose}")
+    elif name is None:
         parser.error("name a demo, or use --list to see them")
+    elif arguments.window:
+        if name not in scenes:
+            parser.error(f"--window opens a scene of the gallery, which {name} is not")
+        import_module(f"demos.scenes.{name}").run(
+            arguments.out, arguments.quick, window=True
+        )
     else:
         arguments.out.mkdir(parents=True, exist_ok=True)
-        import_module(f"demos.{arguments.name}").run(arguments.out, arguments.quick)
+        package = "demos.scenes" if name in scenes else "demos"
+        import_module(f"{package}.{name}").run(arguments.out, arguments.quick)
 
 
 if __name__ == "__main__":

@@ -6,15 +6,20 @@ import csv
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from pymunk_ellipse.hull import ROUNDING, VERTICES
+
 ROOT = Path(__file__).parent.parent
 DEMOS = sorted(path.stem for path in (ROOT / "demos").glob("[!_]*.py"))
+SCENES = sorted(path.stem for path in (ROOT / "demos" / "scenes").glob("[!_]*.py"))
 README = (ROOT / "README.md").read_text("utf-8")
 
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+GIF_SIGNATURE = b"GIF89a"
 
 
 def python(*arguments: str | Path) -> str:
@@ -53,7 +58,7 @@ def number_after(label: str, printed: str) -> float:
 
 @pytest.mark.demo
 @pytest.mark.timeout(30)
-@pytest.mark.parametrize("name", DEMOS)
+@pytest.mark.parametrize("name", [*DEMOS, *SCENES])
 def test_leaves_a_picture(quick_run, name):
     printed, out = quick_run(name)
     picture = out / f"{name}.png"
@@ -89,28 +94,212 @@ def test_rocking_polygons_come_to_rest(quick_run):
     assert all(float(row[-1].rstrip("%")) < 50.0 for row in rows)
 
 
+def table(path: Path) -> list[dict[str, str]]:
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 @pytest.mark.demo
 def test_speed_times_every_kind_of_shape(quick_run):
     _, out = quick_run("speed")
-    with open(out / "speed.csv", newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    kinds = [row["shapes"] for row in rows]
-    assert kinds[:6] == ["circles", *(f"{n}-gons" for n in (8, 12, 16, 32, 64))]
-    assert "ellipses (python)" in kinds
+    rows = table(out / "speed.csv")
+    for semi_axes in (("14", "7"), ("20", "5")):
+        kinds = [row["shapes"] for row in rows if (row["a"], row["b"]) == semi_axes]
+        assert kinds[:6] == ["circles", *(f"{n}-gons" for n in (8, 12, 16, 32, 64))]
+        assert "ellipses (python)" in kinds
     assert all(float(row["ms per step"]) > 0.0 for row in rows)
     assert all(
         float(row[f"ratio to {row['shapes']}"]) == 1.0
         for row in rows
-        if row["shapes"] in ("circles", "8-gons", "32-gons")
+        if row["shapes"] in ("circles", "8-gons", "12-gons", "32-gons")
     )
 
 
+@pytest.mark.demo
+def test_scaling_compares_the_cost_per_contact(quick_run):
+    printed, out = quick_run("scaling")
+    rows = table(out / "scaling.csv")
+    for name in ("circles", "16-gons", "ellipses"):
+        assert number_after(f"1000 to 500 bodies, {name}", printed) > 0.0
+        sizes = [int(row["bodies"]) for row in rows if row["shapes"] == name]
+        assert sizes == [100, 200, 500, 1000]
+    for row in rows:
+        assert int(row["bodies"]) < int(row["contacts"]) < 4 * int(row["bodies"])
+
+
+@pytest.mark.demo
+def test_hulls_are_compared_with_the_one_in_use(quick_run):
+    _, out = quick_run("hulls")
+    ratios = {row["hull"]: float(row["ratio"]) for row in table(out / "hulls.csv")}
+    assert ratios[f"{VERTICES} vertices, {ROUNDING:g}"] == 1.0
+    assert len(ratios) == 7
+
+
+@pytest.mark.demo
+@pytest.mark.parametrize("name", SCENES)
+def test_scene_leaves_an_animation(quick_run, name):
+    printed, out = quick_run(name)
+    animation = out / f"{name}.gif"
+    assert f"animation: {animation}" in printed
+    assert animation.read_bytes().startswith(GIF_SIGNATURE)
+
+
+@pytest.mark.demo
+def test_gallery_shows_every_scene(quick_run):
+    printed, _ = quick_run("gallery")
+    assert number_after("scenes", printed) == len(SCENES) == 10
+
+
+@pytest.mark.demo
+def test_funnel_lets_every_egg_through(quick_run):
+    printed, _ = quick_run("funnel")
+    eggs = number_after("eggs", printed)
+    assert number_after("eggs in the basket", printed) == eggs
+    assert 0.0 < number_after("mechanical energy left", printed) < 1.0
+
+
+@pytest.mark.demo
+def test_galton_board_spreads_like_independent_steps(quick_run):
+    printed, _ = quick_run("galton")
+    independent = number_after("standard deviation of independent steps", printed)
+    spread = number_after("standard deviation, in pitches", printed)
+    assert 0.7 * independent < spread < 1.4 * independent
+    # Four times the standard error of the mean.
+    mean = number_after("mean place, in pitches of the pegs", printed)
+    ellipses = number_after("ellipses", printed)
+    assert abs(mean) < 4.0 * spread / ellipses**0.5
+
+
+@pytest.mark.demo
+def test_rocker_has_the_period_of_theory(quick_run):
+    printed, _ = quick_run("rocker")
+    period = number_after("period by theory (s)", printed)
+    assert number_after("period of the ellipse (s)", printed) == pytest.approx(
+        period, rel=2e-3
+    )
+    assert number_after("swing left of the ellipse", printed) > 0.98
+    assert number_after("swing left of the 24-gon", printed) < 0.7
+
+
+@pytest.mark.demo
+def test_hopper_discharges_evenly(quick_run):
+    printed, _ = quick_run("hopper")
+    assert number_after("grains out", printed) == number_after("grains", printed)
+    first = number_after("grains per second, the first third", printed)
+    second = number_after("grains per second, the second third", printed)
+    assert second == pytest.approx(first, rel=0.25)
+
+
+@pytest.mark.demo
+def test_cart_rolls_without_much_slip(quick_run):
+    printed, _ = quick_run("cart")
+    assert number_after("turns of the rear wheel", printed) > 3.0
+    rolled = number_after("of its circumference times the turns", printed)
+    assert 0.93 < rolled < 1.02
+
+
+@pytest.mark.demo
+def test_cradle_hands_the_speed_on(quick_run):
+    printed, _ = quick_run("cradle")
+    first = number_after("speed of the first when it hits", printed)
+    assert number_after("speed of the last after it", printed) == pytest.approx(
+        first, rel=0.01
+    )
+    assert 0.95 < number_after("energy left after all hits", printed) < 1.001
+
+
+@pytest.mark.demo
+def test_pinball_is_played_with_exact_normals(quick_run):
+    printed, _ = quick_run("pinball")
+    for label in ("balls launched", "hits of bumpers", "passes through lanes"):
+        assert number_after(label, printed) > 0
+    assert number_after("largest error of a hit's normal (rad)", printed) < 1e-12
+
+
+@pytest.mark.demo
+def test_ragdolls_hold_together(quick_run):
+    printed, _ = quick_run("ragdolls")
+    assert number_after("widest gap of a joint ever", printed) < 3.0
+    assert number_after("limbs below the floor", printed) == 0
+    assert number_after("kinetic energy per mass in the end", printed) < 100.0
+
+
+@pytest.mark.demo
+def test_platforms_are_one_way(quick_run):
+    printed, _ = quick_run("one_way")
+    assert number_after("passes from below", printed) > 0
+    assert number_after("landings from above", printed) > 0
+    assert number_after("steps in which one that had landed was below", printed) == 0
+
+
+@pytest.mark.demo
+def test_mouse_picks_ellipses_not_hulls(quick_run):
+    printed, _ = quick_run("drag")
+    assert number_after("stones picked", printed) == 5
+    assert number_after("stones in the tray", printed) == 5
+    assert number_after("clicks just beside stones", printed) == 40
+    assert number_after("of these, picked", printed) == 0
+
+
+@pytest.fixture
+def no_screen(monkeypatch):
+    """pygame without a screen, a sound card or a greeting."""
+    for variable in ("SDL_VIDEODRIVER", "SDL_AUDIODRIVER"):
+        monkeypatch.setenv(variable, "dummy")
+    monkeypatch.setenv("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    return pytest.importorskip("pygame")
+
+
+@pytest.mark.demo
+@pytest.mark.parametrize("name", SCENES)
+def test_scene_runs_in_a_window(no_screen, name):
+    (make,) = import_module(f"demos.scenes.{name}").run.args
+    from demos.scenes._window import open_window
+
+    shown = open_window(make, frames=3)
+    assert shown.steps == 12
+    assert len(shown.space.shapes) > 0
+
+
+@pytest.mark.demo
+def test_mouse_drags_in_a_window(no_screen):
+    pygame = no_screen
+    (make,) = import_module("demos.scenes.drag").run.args
+    left, _, _, top = make.view
+    pixels = 900 / 320
+    stone = pixels * (-130 - left), pixels * (top - 12)
+    pygame.init()
+    pygame.display.set_mode((1, 1))
+    for kind, place in (
+        (pygame.MOUSEBUTTONDOWN, stone),
+        (pygame.MOUSEMOTION, (stone[0], stone[1] - 50)),
+    ):
+        pygame.event.post(pygame.event.Event(kind, pos=place, button=1))
+    from demos.scenes._window import open_window
+
+    shown = open_window(make, frames=20)
+    assert shown.picked == 1
+    assert max(stone.body.position.y for stone in shown.stones) > 15
+
+
 def test_list_names_every_demo_with_its_purpose():
+    listed = python("-m", "demos", "--list")
     lines = [
-        line.split(maxsplit=1) for line in python("-m", "demos", "--list").splitlines()
+        line.split(maxsplit=1) for line in listed.splitlines() if line.startswith("  ")
     ]
-    assert [name for name, _ in lines] == DEMOS
+    assert [name for name, _ in lines] == DEMOS + SCENES
     assert all(purpose.endswith(".") for _, purpose in lines)
+
+
+def test_window_is_for_scenes():
+    finished = subprocess.run(
+        [sys.executable, "-m", "demos", "pile", "--window"],
+        cwd=ROOT,
+        capture_output=True,
+        encoding="utf-8",
+    )
+    assert finished.returncode == 2
+    assert "--window" in finished.stderr
 
 
 def test_unknown_demo_is_refused():
@@ -140,7 +329,9 @@ def test_readme_and_ci_run_the_same_tests():
     assert command in (ROOT / ".ci" / "run").read_text("utf-8").splitlines()
 
 
-def test_readme_picture_is_there_and_small():
-    (picture,) = re.findall(r"!\[.*?\]\((.*?)\)", README)
-    assert (ROOT / picture).read_bytes().startswith(PNG_SIGNATURE)
-    assert (ROOT / picture).stat().st_size < 150_000
+def test_readme_pictures_are_there_and_small():
+    pictures = re.findall(r"!\[.*?\]\((.*?)\)", README)
+    assert pictures
+    for picture in pictures:
+        assert (ROOT / picture).read_bytes().startswith(PNG_SIGNATURE)
+        assert (ROOT / picture).stat().st_size < 200_000

@@ -1,0 +1,62 @@
+"""A contact sheet of the gallery's scenes, each a small file in demos/scenes to copy from."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+from tqdm import tqdm
+
+from .scenes._canvas import BACKGROUND, OUTLINE, Canvas
+from .scenes._scene import Scene, steps_to_picture
+
+COLUMNS = 5
+TILE = 216
+CAPTION = 22
+GAP = 6
+COLORS = 64
+
+
+def scenes() -> dict[str, type[Scene]]:
+    """The scenes of the gallery by the names of their files."""
+    found = {}
+    for path in sorted((Path(__file__).parent / "scenes").glob("[!_]*.py")):
+        module = import_module(f"demos.scenes.{path.stem}")
+        (found[path.stem],) = module.run.args
+    return found
+
+
+def run(out: Path, quick: bool) -> None:
+    """Run each scene to the moment of its picture; a quick run is the same, it takes seconds."""
+    tiles = {}
+    for name, make in tqdm(scenes().items(), "gallery", unit="scene"):
+        scene = make()
+        for _ in range(steps_to_picture(make)):
+            scene.play()
+            scene.step()
+        tiles[name] = Canvas(make.view, TILE).draw(scene.space)
+    sheet = contact_sheet(tiles).quantize(COLORS, dither=Image.Dither.NONE)
+    picture = out / "gallery.png"
+    sheet.save(picture, optimize=True)
+    print(f"scenes: {len(tiles)}")
+    print(f"picture: {picture}")
+
+
+def contact_sheet(tiles: dict[str, Image.Image]) -> Image.Image:
+    """Pictures in rows, each over its name."""
+    rows = -(-len(tiles) // COLUMNS)
+    pitch_x = TILE + GAP
+    pitch_y = TILE + CAPTION + GAP
+    size = COLUMNS * pitch_x + GAP, rows * pitch_y + GAP
+    sheet = Image.new("RGB", size, "white")
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(14)
+    for i, (name, tile) in enumerate(tiles.items()):
+        x = GAP + i % COLUMNS * pitch_x
+        y = GAP + i // COLUMNS * pitch_y
+        draw.rectangle((x, y, x + TILE, y + TILE), fill=BACKGROUND)
+        sheet.paste(tile, (x + (TILE - tile.width) // 2, y + (TILE - tile.height) // 2))
+        center = x + TILE / 2, y + TILE + CAPTION / 2
+        draw.text(center, name, fill=OUTLINE, font=font, anchor="mm")
+    return sheet

@@ -1,0 +1,1 @@
+"""The gallery's scenes: each module without a leading underscore is one, to copy from."""

@@ -87,12 +87,10 @@ class Space(EventSpace):
             return nearest
         nearest = nearest.shape._nearest(point)
         limit = min(nearest.distance, max_distance)
-        nearer = self.point_query(point, limit, shape_filter)
-        return min(
-            [nearest] * (nearest.distance < max_distance) + nearer,
-            key=lambda hit: hit.distance,
-            default=None,
-        )
+        hits = self.point_query(point, limit, shape_filter)
+        if nearest.distance < max_distance:
+            hits.append(nearest)
+        return min(hits, key=lambda hit: hit.distance, default=None)
 
     def segment_query(
         self,
@@ -129,12 +127,14 @@ class Space(EventSpace):
                 hit = shape._hit(start, end, radius)
                 if hit is not None:
                     hits[shape] = hit
-        # Each in its hull's place, and those without at the end.
-        return [
-            hits.pop(hit.shape) if isinstance(hit.shape, Ellipse) else hit
-            for hit in found
-            if hit.shape in hits or not isinstance(hit.shape, Ellipse)
-        ] + list(hits.values())
+        # Each in its hull's place, and those whose hull was overlooked at the end.
+        exact = []
+        for hit in found:
+            if not isinstance(hit.shape, Ellipse):
+                exact.append(hit)
+            elif hit.shape in hits:
+                exact.append(hits.pop(hit.shape))
+        return [*exact, *hits.values()]
 
     def segment_query_first(
         self,

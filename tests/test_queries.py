@@ -686,7 +686,8 @@ def test_what_is_behind_a_hull_is_first():
     assert pymunk.Space.segment_query_first(space, *way).shape is egg
     assert space.segment_query_first(*way) is None
     # What is touched only at the end does not count.
-    floor = pymunk.Poly(space.static_body, [(-90, -30), (90, -30), (0, -50)])
+    corners = [(x - 10, -40), (x + 10, -20), (x + 10, -60)]
+    floor = pymunk.Poly(space.static_body, corners)
     space.add(floor)
     assert floor.segment_query(*way[:3]).alpha == 1
     assert [hit.shape for hit in space.segment_query(*way)] == [floor]

@@ -878,6 +878,26 @@ def test_shapes_collide_takes_other_shapes_where_update_put_them():
         egg.update(Transform.identity())
 
 
+def test_shapes_that_nothing_has_placed_are_at_the_origin():
+    for other, touches in (
+        (pymunk.Circle(None, 1, (4.5, 0)), True),
+        (pymunk.Circle(None, 1, (30, 0)), False),
+        (pymunk.Segment(None, (3, 0), (30, 0), 1), True),
+        (pymunk.Segment(None, (20, 0), (30, 0), 1), False),
+        (pymunk.Poly(None, [(3, 0), (30, 0), (30, 9)]), True),
+        (pymunk.Poly(None, [(20, 0), (30, 0), (30, 9)]), False),
+    ):
+        assert bool(Ellipse(None, 4, 2).shapes_collide(other).points) == touches
+
+
+def test_a_face_touched_next_to_its_corner_is_a_face():
+    egg = Ellipse(None, 4, 2)
+    corners = [(-1e-6, -1.9), (9, -1.9), (9, -9), (-1e-6, -9)]
+    contact = egg.shapes_collide(pymunk.Poly(None, corners))
+    assert contact.normal == pytest.approx((0, -1), abs=1e-12)
+    assert contact.points[0].point_a == pytest.approx((0, -2), abs=1e-12)
+
+
 @pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0, 1e3, 1e6])
 def test_shape_queries_at_any_scale(size):
     rng = np.random.default_rng(12)

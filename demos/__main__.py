@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import ast
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
-
 
 HERE = Path(__file__).parent
 
@@ -49,7 +49,9 @@ def main() -> None:
         "--quick", action="store_true", help="a smaller run, in seconds"
     )
     parser.add_argument(
-        "--window", action="store_true", help="open a scene in a pygame window instead"
+        "--window",
+        action="store_true",
+        help="open the game or a scene in a window instead",
     )
     arguments = parser.parse_args()
     name = arguments.name
@@ -61,16 +63,16 @@ def main() -> None:
                 print(f"  {module:{width}}  {purpose}")
     elif name is None:
         parser.error("name a demo, or use --list to see them")
-    elif arguments.window:
-        if name not in scenes:
-            parser.error(f"--window opens a scene of the gallery, which {name} is not")
-        import_module(f"demos.scenes.{name}").run(
-            arguments.out, arguments.quick, window=True
-        )
     else:
-        arguments.out.mkdir(parents=True, exist_ok=True)
         package = "demos.scenes" if name in scenes else "demos"
-        import_module(f"{package}.{name}").run(arguments.out, arguments.quick)
+        run = import_module(f"{package}.{name}").run
+        if not arguments.window:
+            arguments.out.mkdir(parents=True, exist_ok=True)
+            run(arguments.out, arguments.quick)
+        elif "window" in signature(run).parameters:
+            run(arguments.out, arguments.quick, window=True)
+        else:
+            parser.error(f"--window is for the game and the scenes, not for {name}")
 
 
 if __name__ == "__main__":

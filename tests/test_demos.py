@@ -241,6 +241,14 @@ def test_mouse_picks_ellipses_not_hulls(quick_run):
     assert number_after("of these, picked", printed) == 0
 
 
+@pytest.mark.demo
+def test_game_is_won_by_the_autopilot_and_survives_saving(quick_run):
+    printed, _ = quick_run("game")
+    assert number_after("flag reached", printed) == 1
+    assert number_after("coins", printed) == 5
+    assert number_after("distance to the egg of the loaded game", printed) < 1e-9
+
+
 @pytest.fixture
 def no_screen(monkeypatch):
     """pygame without a screen, a sound card or a greeting."""
@@ -280,6 +288,37 @@ def test_mouse_drags_in_a_window(no_screen):
     shown = open_window(make, frames=20)
     assert shown.picked == 1
     assert max(stone.body.position.y for stone in shown.stones) > 15
+
+
+@pytest.mark.demo
+def test_game_is_played_with_keys(no_screen):
+    pygame = no_screen
+    from demos import game
+
+    pygame.init()
+    pygame.display.set_mode((1, 1))
+    for key in (pygame.K_s, pygame.K_l, pygame.K_r, pygame.K_ESCAPE):
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key))
+    game.play()
+    held = game.Game()
+    still = game.Game()
+    for _ in range(120):
+        held.step(game.Controls(roll=1.0))
+        still.step(game.Controls())
+    assert held.player.body.position.x > still.player.body.position.x + 50.0
+
+
+@pytest.mark.demo
+def test_game_draws_between_steps(no_screen):
+    from demos import game
+
+    played = game.Game()
+    played.advance(1.5 * game.STEP, lambda _: game.Controls(roll=1.0))
+    assert played.steps == 1
+    body = played.player.body
+    position, _ = played.pose(body)
+    before, _ = played.before[body]
+    assert position.get_distance((before + body.position) / 2.0) < 1e-9
 
 
 def test_list_names_every_demo_with_its_purpose():

@@ -467,7 +467,8 @@ def test_the_hull_is_where_update_puts_it():
     shape = Ellipse(body, 4, 2)
     body.position = 50, 50
     shape.cache_bb()
-    assert pymunk.Poly.point_query(shape, (50, 50)).distance < 0
+    assert pymunk.Poly.point_query(shape, (50, 50)).distance < -1
+    assert pymunk.Poly.point_query(shape, (0, 0)).distance > 60
 
 
 # The space

@@ -262,7 +262,7 @@ def test_events_are_those_of_the_ellipses(keys):
 
     before = set()
     count = Counter()
-    for _ in range(250):
+    for _ in range(150):
         world.move()
         now = world.touching()
         log.clear()

@@ -1,0 +1,192 @@
+"""Ellipses from what is at hand: points, an outline, an image mask or a bounding box."""
+
+from __future__ import annotations
+
+from math import atan2, hypot, sqrt
+from typing import NamedTuple
+
+import numpy as np
+import pymunk
+from numpy.typing import ArrayLike, NDArray
+from pymunk import Vec2d
+
+from . import _checks
+
+
+class EllipseParameters(NamedTuple):
+    """What an Ellipse is made of, in the order of its arguments: Ellipse(body, *parameters)."""
+
+    a: float
+    b: float
+    offset: Vec2d
+    #: The angle of a (radians), from -pi/2 to pi/2; 0 where a and b are equal.
+    angle: float
+
+
+def ellipse_from_points(points: ArrayLike) -> EllipseParameters:
+    """The ellipse with the mean and the second moments of points that are spread over a shape.
+
+    points are n rows of x and y, evenly distributed over the area of what they stand for, and
+    not only along its edge; that is what :py:func:`ellipse_from_outline` is for. a is not
+    shorter than b.
+
+    An ellipse that is evenly filled has the variances a^2/4 and b^2/4 along its axes.
+
+    Raises TypeError or ValueError for points that are not finite numbers in rows of two, for
+    fewer than three, and for those that lie on a line.
+
+    >>> a, b, offset, angle = ellipse_from_points([(2, 0), (-2, 0), (0, 1), (0, -1)])
+    >>> round(a, 3), round(b, 3), offset, angle
+    (2.828, 1.414, Vec2d(0.0, 0.0), 0.0)
+    """
+    array = _rows_of_two("points", points)
+    if len(array) < 3:
+        raise ValueError(f"points must be three or more, got {len(array)}")
+    center = array.mean(axis=0)
+    x, y = (array - center).T
+    moments = float(np.mean(x * x)), float(np.mean(x * y)), float(np.mean(y * y))
+    return _ellipse("points", float(center[0]), float(center[1]), *moments)
+
+
+def ellipse_from_outline(vertices: ArrayLike) -> EllipseParameters:
+    """The ellipse with the centroid and the second moments of the area that a polygon encloses.
+
+    vertices are those of a polygon that does not cross itself, convex or not, in order, in
+    either direction; pymunk.Poly.get_vertices gives such. a is not shorter than b.
+
+    Raises TypeError or ValueError for vertices that are not finite numbers in rows of two, for
+    fewer than three, and for those that enclose no area.
+
+    >>> a, b, offset, angle = ellipse_from_outline([(0, 0), (6, 0), (6, 2), (0, 2)])
+    >>> round(a / b, 3), offset, angle
+    (3.0, Vec2d(3.0, 1.0), 0.0)
+    """
+    array = _rows_of_two("vertices", vertices)
+    if len(array) < 3:
+        raise ValueError(f"vertices must be three or more, got {len(array)}")
+    # Near the origin, sums of products lose the fewest digits.
+    origin = array.mean(axis=0)
+    x, y = (array - origin).T
+    # Each edge and the origin make a triangle, whose moments are polynomials of the two ends.
+    next_x = np.roll(x, -1)
+    next_y = np.roll(y, -1)
+    twice_area = x * next_y - next_x * y
+    area = float(np.sum(twice_area)) / 2.0
+    extent = float(np.ptp(x)) * float(np.ptp(y))
+    if not abs(area) > 1e-12 * extent:
+        raise ValueError("vertices must enclose an area")
+    mean_x = float(np.sum(twice_area * (x + next_x))) / (6.0 * area)
+    mean_y = float(np.sum(twice_area * (y + next_y))) / (6.0 * area)
+    xx = np.sum(twice_area * (x * x + x * next_x + next_x * next_x)) / (12.0 * area)
+    yy = np.sum(twice_area * (y * y + y * next_y + next_y * next_y)) / (12.0 * area)
+    products = 2.0 * (x * y + next_x * next_y) + x * next_y + next_x * y
+    xy = np.sum(twice_area * products) / (24.0 * area)
+    return _ellipse(
+        "vertices",
+        float(origin[0]) + mean_x,
+        float(origin[1]) + mean_y,
+        float(xx) - mean_x * mean_x,
+        float(xy) - mean_x * mean_y,
+        float(yy) - mean_y * mean_y,
+    )
+
+
+def ellipse_from_mask(mask: ArrayLike) -> EllipseParameters:
+    """The ellipse with the centroid and the second moments of what an image shows.
+
+    mask has a row for each row of pixels. Its entries are weights, not negative: True and
+    False, or how opaque a pixel is, the alpha channel of a sprite for example. Pixels are
+    squares of side 1; x counts columns and y counts rows from the corner of the first
+    pixel. Where the first row is the top and y is to point up, pass mask[::-1]. a is not
+    shorter than b.
+
+    Raises TypeError or ValueError for a mask that is not two-dimensional, has entries that are
+    negative or not finite, or is empty.
+
+    >>> a, b, offset, angle = ellipse_from_mask([[0, 0, 0], [1, 1, 1]])
+    >>> round(a / b, 3), offset, angle
+    (3.0, Vec2d(1.5, 1.5), 0.0)
+    """
+    weights = _floats("mask", mask)
+    if weights.ndim != 2:
+        raise ValueError(f"mask must have two dimensions, got {weights.ndim}")
+    if np.any(weights < 0.0):
+        raise ValueError(f"mask must not be negative, got {weights.min()!s}")
+    total = float(weights.sum())
+    if not total > 0.0:
+        raise ValueError("mask must have a pixel that is not zero")
+    columns = weights.sum(axis=0) / total
+    rows = weights.sum(axis=1) / total
+    x = np.arange(len(columns)) + 0.5
+    y = np.arange(len(rows)) + 0.5
+    center_x = float(columns @ x)
+    center_y = float(rows @ y)
+    x -= center_x
+    y -= center_y
+    # Each pixel adds the moments of a square about its own centre.
+    square = 1.0 / 12.0
+    return _ellipse(
+        "mask",
+        center_x,
+        center_y,
+        float(columns @ (x * x)) + square,
+        float(y @ weights @ x) / total,
+        float(rows @ (y * y)) + square,
+    )
+
+
+def ellipse_from_bb(bb: pymunk.BB) -> EllipseParameters:
+    """The ellipse that touches the four sides of a bounding box: a along x, b along y.
+
+    Raises ValueError for a box that is not finite or has no extent.
+
+    >>> ellipse_from_bb(pymunk.BB(left=-20, bottom=0, right=20, top=10))
+    EllipseParameters(a=20.0, b=5.0, offset=Vec2d(0.0, 5.0), angle=0.0)
+    """
+    left, bottom, right, top = (
+        _checks.number(f"bb.{side}", getattr(bb, side, None))
+        for side in ("left", "bottom", "right", "top")
+    )
+    if not (left < right and bottom < top):
+        raise ValueError(f"bb must have an extent in x and y, got {bb!r}")
+    a, b = (right - left) / 2.0, (top - bottom) / 2.0
+    return EllipseParameters(a, b, Vec2d(left + a, bottom + b), 0.0)
+
+
+def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """value as an array of finite floats."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
+    if not np.all(np.isfinite(array)):
+        wrong = array[~np.isfinite(array)][0]
+        raise ValueError(f"{name} must be finite, got {wrong!s}")
+    return array
+
+
+def _rows_of_two(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    array = _floats(name, value)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name} must be rows of x and y, got shape {array.shape}")
+    return array
+
+
+def _ellipse(
+    name: str, x: float, y: float, xx: float, xy: float, yy: float
+) -> EllipseParameters:
+    """The ellipse with this centre and these second moments per area about it."""
+    middle = (xx + yy) / 2.0
+    half_difference = hypot((xx - yy) / 2.0, xy)
+    longest = middle + half_difference
+    # The determinant: middle - half_difference would cancel for a thin one.
+    shortest = (xx * yy - xy * xy) / longest if longest > 0.0 else 0.0
+    # Less is roundoff, or beyond the aspect ratio that an Ellipse can have.
+    if not shortest > longest / _checks.LARGEST_ASPECT_RATIO**2:
+        raise ValueError(f"{name} must not lie on a line")
+    # Equal but for roundoff: no direction is that of the longer axis.
+    isotropic = half_difference <= 1e-12 * middle
+    angle = 0.0 if isotropic else atan2(2.0 * xy, xx - yy) / 2.0
+    return EllipseParameters(
+        2.0 * sqrt(longest), 2.0 * sqrt(shortest), Vec2d(x, y), angle
+    )

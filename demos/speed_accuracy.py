@@ -1,0 +1,441 @@
+"""Speed against accuracy, per contact and per scene: polygons, the published fit and the common-normal fit."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import inf
+from pathlib import Path
+from statistics import mean
+
+import pymunk
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from tqdm import tqdm
+
+from pymunk_ellipse import Ellipse, backend
+
+from ._methods import Method, Pairs, Score, methods, random_pairs, score
+from ._picture import OUTLINE, save
+from ._scene_errors import (
+    TimedPile,
+    collision_error,
+    period_error,
+    rolling_error,
+    swing_lost,
+)
+from ._shapes import inscribed_polygon
+from ._stability import Make
+from ._variants import replaced
+
+ASPECT_RATIOS = 1.2, 2.0, 5.0, 20.0
+QUICK_ASPECT_RATIOS = 2.0, 20.0
+# By b: from less than the collision slop of a shape ten units wide to a hard hit.
+DEPTHS = 0.003, 0.1
+SEED = 1
+
+Scores = dict[Method, Score]
+# Median and worst of what a method is off by.
+Accuracy = Callable[[Score], tuple[float, float]]
+
+REFERENCE = "scan and bisection"
+
+FAMILIES = {
+    "polygons inside": ("C0", "s"),
+    "polygons around": ("C9", "D"),
+    "alternating fit": ("C2", "o"),
+    "common normal, cold": ("C1", "v"),
+    "common normal, warm": ("C3", "^"),
+    "as shipped, cold": ("C1", "*"),
+    "as shipped, warm": ("C3", "*"),
+    REFERENCE: ("C7", "X"),
+}
+# What cannot be told from roundoff is drawn here.
+ROUNDOFF = 1e-15
+
+
+def run(out: Path, quick: bool) -> None:
+    """Time and compare all methods; a quick run has fewer pairs, rounds and scenes, and compiles nothing."""
+    contacts(out, quick)
+    scenes(out, quick)
+
+
+def contacts(out: Path, quick: bool) -> None:
+    """The chart per contact."""
+    pairs = 30 if quick else 400
+    rounds = 1 if quick else 9
+    compared = methods(machine_code=not quick)
+    table = {
+        ratio: time_methods(
+            compared,
+            random_pairs(ratio, *DEPTHS, pairs, SEED),
+            rounds,
+            f"aspect ratio {ratio:g}",
+        )
+        for ratio in (QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS)
+    }
+    write(table, out / "speed_accuracy.csv")
+    read(table, pairs)
+    save(draw(table, pairs), out / "speed_accuracy.png", dpi=110)
+
+
+def time_methods(
+    compared: list[Method], pairs: Pairs, rounds: int, label: str
+) -> Scores:
+    """Run all methods in turn, round after round, on the same pairs."""
+    for method in compared:
+        method.seconds.clear()
+    for _ in tqdm(range(rounds), label, unit="round"):
+        for method in compared:
+            taken, method.found = method.run(pairs)
+            method.seconds.append(taken)
+    return {method: score(method, pairs) for method in compared}
+
+
+def write(table: dict[float, Scores], path: Path) -> None:
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(
+            (
+                "aspect ratio",
+                "method",
+                "number",
+                "machine code",
+                "microseconds",
+                "depth off / b, median",
+                "worst",
+                "normal off (rad), median",
+                "worst",
+                "missed",
+            )
+        )
+        for ratio, scores in table.items():
+            for method, found in scores.items():
+                offs = (f"{off:.3g}" for off in (*found.depth, *found.normal))
+                rows.writerow(
+                    (
+                        ratio,
+                        method.family,
+                        method.count,
+                        method.compiled,
+                        f"{1e6 * found.seconds:.4g}",
+                        *offs,
+                        found.missed,
+                    )
+                )
+    print(f"table: {path}")
+
+
+def front(scores: Scores, accuracy: Accuracy) -> list[Method]:
+    """The methods than which none is both faster and more accurate in the median, the fastest first."""
+    best = inf
+    result = []
+    for method, found in sorted(scores.items(), key=lambda item: item[1].seconds):
+        off = max(accuracy(found)[0], ROUNDOFF)
+        if off < best and method.family != REFERENCE:
+            best = off
+            result.append(method)
+    return result
+
+
+def read(table: dict[float, Scores], pairs: int) -> None:
+    """Say in numbers what the chart shows."""
+    print(
+        f"{pairs} pairs for each aspect ratio, depths from {DEPTHS[0]:g} b to {DEPTHS[1]:g} b"
+    )
+    for ratio, scores in table.items():
+        print(f"aspect ratio {ratio:g}, machine code unless it says Python:")
+        for method, found in scores.items():
+            shown = method.family.startswith("as shipped") or (
+                method.family,
+                method.count,
+            ) in (
+                ("polygons inside", 8),
+                ("polygons inside", 64),
+                ("polygons around", 64),
+                ("alternating fit", 10),
+                ("common normal, warm", 2),
+            )
+            if shown:
+                where = "" if method.compiled else " (Python)"
+                print(
+                    f"  {method.label + where:32} {1e6 * found.seconds:8.3f} us, depth off by "
+                    f"{found.depth[0]:.1e} b (worst {found.depth[1]:.1e}), normal by "
+                    f"{found.normal[0]:.1e} (worst {found.normal[1]:.1e}), missed {found.missed}"
+                )
+        best = front(scores, lambda found: found.normal)
+        print(
+            "  front in the normal: "
+            + "; ".join(
+                method.label + ("" if method.compiled else " (Python)")
+                for method in best
+            )
+        )
+
+
+def draw(table: dict[float, Scores], pairs: int) -> Figure:
+    """A column for each aspect ratio, a row for the depth and one for the normal."""
+    figure = Figure(figsize=(3.6 * len(table), 7.6), layout="constrained")
+    rows = figure.subplots(2, len(table), sharex=True, sharey="row", squeeze=False)
+    accuracies: tuple[Accuracy, Accuracy] = (
+        lambda found: found.depth,
+        lambda found: found.normal,
+    )
+    labels = "depth off by (in b)", "normal off by (radians)"
+    for row, accuracy, label in zip(rows, accuracies, labels, strict=True):
+        for axes, (ratio, scores) in zip(row, table.items(), strict=True):
+            draw_panel(axes, scores, accuracy)
+            axes.set_title(f"aspect ratio {ratio:g}", fontsize="medium")
+            axes.set_xlabel("microseconds per pair")
+        row[0].set_ylabel(label)
+    handles = [
+        Line2D([], [], color=color, marker=marker, linestyle="", label=family)
+        for family, (color, marker) in FAMILIES.items()
+    ]
+    handles += [
+        Line2D([], [], color=OUTLINE, label="front of all"),
+        Line2D([], [], color=OUTLINE, linestyle=":", label="front in Python"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5)
+    figure.suptitle(
+        f"{pairs} overlapping pairs, {DEPTHS[0]:g} b to {DEPTHS[1]:g} b deep. Marks: median, the whisker ends at the worst; "
+        "filled: machine code, hollow: Python.\nNumbers: vertices, sweeps or steps. "
+        "Left and low is better.",
+        fontsize="medium",
+    )
+    return figure
+
+
+def draw_panel(axes: Axes, scores: Scores, accuracy: Accuracy) -> None:
+    for method, found in scores.items():
+        color, marker = FAMILIES[method.family]
+        time = 1e6 * found.seconds
+        typical, worst = (max(off, ROUNDOFF) for off in accuracy(found))
+        axes.plot(
+            time,
+            typical,
+            color=color,
+            marker=marker,
+            markersize=11 if marker == "*" else 6,
+            markerfacecolor=color if method.compiled else "white",
+            linestyle="",
+            zorder=3,
+        )
+        axes.plot([time, time], [typical, worst], color=color, linewidth=0.6, alpha=0.7)
+        if method.count and method.compiled:
+            axes.annotate(
+                str(method.count),
+                (time, typical),
+                (4, 3),
+                textcoords="offset points",
+                fontsize="xx-small",
+                color=color,
+            )
+    python = {m: found for m, found in scores.items() if not m.compiled}
+    for chosen, style in ((scores, "-"), (python, ":")):
+        best = [chosen[method] for method in front(chosen, accuracy)]
+        axes.plot(
+            [1e6 * found.seconds for found in best],
+            [max(accuracy(found)[0], ROUNDOFF) for found in best],
+            drawstyle="steps-post",
+            color=OUTLINE,
+            linestyle=style,
+            linewidth=1.0,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+POLYGONS = 8, 16, 32, 64, 128
+QUICK_POLYGONS = 8, 32
+RATES = 60, 120, 240, 480
+QUICK_RATES = (240,)
+ELLIPSE = "ellipse"
+IN_PYTHON = "ellipse (Python)"
+RATE_COMPARED = 240
+
+ERRORS = {
+    "period of rocking, off by": period_error,
+    "swing lost in 10 s": swing_lost,
+    "way rolled in 4 s, off by": rolling_error,
+    "outcome of an elastic hit, off by": collision_error,
+}
+RESTLESSNESS = "speed in a pile at rest"
+PILE_HEIGHT = "height of the pile, off the ellipses' mean by"
+
+
+@dataclass
+class Seen:
+    """What a shape at a step costs, in milliseconds per second of a pile, and how large its errors are."""
+
+    milliseconds: float
+    errors: dict[str, float]
+
+
+# By the name of the shape and the steps per second.
+SeenAt = dict[tuple[str, int], Seen]
+
+
+def polygon(body: pymunk.Body, a: float, b: float, count: int) -> pymunk.Shape:
+    return inscribed_polygon(body, a, b, count)
+
+
+def scenes(out: Path, quick: bool) -> None:
+    """The chart per scene."""
+    shapes: dict[str, Make] = {ELLIPSE: Ellipse}
+    for count in QUICK_POLYGONS if quick else POLYGONS:
+        shapes[f"{count}-gon"] = partial(polygon, count=count)
+    rates = QUICK_RATES if quick else RATES
+    piles = time_piles(shapes, rates, quick)
+    seen: SeenAt = {}
+    heights = [pile.height for (name, _), pile in piles.items() if name == ELLIPSE]
+    height = mean(heights)
+    for (name, rate), pile in tqdm(piles.items(), "scenes", unit="shape and step"):
+        if name == IN_PYTHON:
+            # It differs from machine code in nothing but time.
+            errors = dict(seen[ELLIPSE, rate].errors)
+        else:
+            errors = {
+                label: error(shapes[name], 1.0 / rate)
+                for label, error in ERRORS.items()
+            }
+        errors[RESTLESSNESS] = pile.speed
+        errors[PILE_HEIGHT] = pile.height / height - 1.0
+        seen[name, rate] = Seen(pile.milliseconds, errors)
+    with open(
+        out / "speed_accuracy_scenes.csv", "w", newline="", encoding="utf-8"
+    ) as file:
+        rows = csv.writer(file)
+        rows.writerow(
+            (
+                "shape",
+                "steps per second",
+                "ms per second",
+                *ERRORS,
+                RESTLESSNESS,
+                PILE_HEIGHT,
+            )
+        )
+        for (name, rate), found in seen.items():
+            errors = (f"{error:.3g}" for error in found.errors.values())
+            rows.writerow((name, rate, f"{found.milliseconds:.4g}", *errors))
+    print(f"table: {out / 'speed_accuracy_scenes.csv'}")
+    read_scenes(seen)
+    scatter = (max(heights) - min(heights)) / height
+    print(f"the piles of ellipses differ in height among themselves by {scatter:.2g}")
+    save(draw_scenes(seen), out / "speed_accuracy_scenes.png", dpi=110)
+
+
+def time_piles(
+    shapes: dict[str, Make], rates: Sequence[int], quick: bool
+) -> dict[tuple[str, int], TimedPile]:
+    """Let the piles come to rest, then step them in turn, round after round."""
+    piles = {
+        (name, rate): TimedPile(make, 1.0 / rate)
+        for name, make in shapes.items()
+        for rate in rates
+    }
+    if backend() == "compiled":
+        with replaced():
+            for rate in rates:
+                piles[IN_PYTHON, rate] = TimedPile(Ellipse, 1.0 / rate)
+    for pile in tqdm(piles.values(), "piles settle", unit="pile"):
+        pile.settle(2.0 if quick else 6.0)
+    for _ in tqdm(range(2 if quick else 15), "piles timed", unit="round"):
+        for pile in piles.values():
+            pile.time(0.1)
+    return piles
+
+
+def read_scenes(seen: SeenAt) -> None:
+    """Say which polygon, if any, is as accurate as the ellipse, and at what price."""
+    ellipse = seen[ELLIPSE, RATE_COMPARED]
+    print(
+        f"ellipse at 1/{RATE_COMPARED} s: {ellipse.milliseconds:.1f} ms per second of a pile of 60"
+    )
+    for label, error in ellipse.errors.items():
+        if label == PILE_HEIGHT:
+            # Piles differ by chance.
+            continue
+        rivals = [
+            (found.milliseconds / ellipse.milliseconds, name, rate)
+            for (name, rate), found in seen.items()
+            if not name.startswith(ELLIPSE) and found.errors[label] <= error
+        ]
+        best = min(
+            (
+                (found.errors[label], name, rate)
+                for (name, rate), found in seen.items()
+                if not name.startswith(ELLIPSE)
+            ),
+        )
+        print(
+            f"  {label} {error:.2g}; best polygon: {best[1]} at 1/{best[2]} s, {best[0]:.2g}; as accurate: "
+            + (
+                "{1} at 1/{2} s, at {0:.2f} times the cost".format(*min(rivals))
+                if rivals
+                else "none"
+            )
+        )
+
+
+def draw_scenes(seen: SeenAt) -> Figure:
+    """A panel for each error, a line for each shape through its steps."""
+    labels = [*ERRORS, RESTLESSNESS, PILE_HEIGHT]
+    names = list(dict.fromkeys(name for name, _rate in seen))
+    figure = Figure(figsize=(12.0, 7.0), layout="constrained")
+    panels = figure.subplots(2, 3, sharex=True).flat
+    shades = colormaps["viridis"]
+    polygons = [name for name in names if not name.startswith(ELLIPSE)]
+    colors = dict.fromkeys(names, "C3") | {
+        name: shades(0.85 * index / max(1, len(polygons) - 1))
+        for index, name in enumerate(polygons)
+    }
+    for axes, label in zip(panels, labels, strict=True):
+        logarithmic = label != PILE_HEIGHT
+        least = 1e-9 if logarithmic else -1.0
+        for name in names:
+            points = [
+                (found.milliseconds, max(found.errors[label], least), rate)
+                for (other, rate), found in seen.items()
+                if other == name
+            ]
+            ours = name.startswith(ELLIPSE)
+            axes.plot(
+                [point[0] for point in points],
+                [point[1] for point in points],
+                color=colors[name],
+                linestyle=":" if name == IN_PYTHON else "-",
+                linewidth=2.0 if ours else 1.0,
+                marker="o",
+                markersize=4,
+                label=name,
+            )
+            if ours:
+                for time, error, rate in points:
+                    axes.annotate(
+                        f"1/{rate}",
+                        (time, error),
+                        (4, 4),
+                        textcoords="offset points",
+                        fontsize="xx-small",
+                    )
+        axes.set_xscale("log")
+        axes.set_yscale("log" if logarithmic else "linear")
+        axes.set_title(label, fontsize="medium")
+        axes.set_xlabel("ms of work per second of a pile of 60", fontsize="small")
+        axes.spines[["top", "right"]].set_visible(False)
+    handles, texts = axes.get_legend_handles_labels()
+    figure.legend(handles, texts, loc="outside lower center", ncols=len(texts))
+    figure.suptitle(
+        "Errors in scenes with known outcomes against the cost of a pile; the points of a line are steps of "
+        + ", ".join(f"1/{rate}" for rate in dict.fromkeys(rate for _, rate in seen))
+        + " s.\nRelative errors; 1 where nothing is left. Left and low is better.",
+        fontsize="medium",
+    )
+    return figure

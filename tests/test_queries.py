@@ -899,6 +899,13 @@ def test_a_face_touched_next_to_its_corner_is_a_face():
     assert contact.points[0].point_a == pytest.approx((0, -2), abs=1e-12)
 
 
+def test_a_face_with_a_corner_close_behind_it_is_a_face():
+    contact = Ellipse(None, 4, 2, (0, 1.999)).shapes_collide(
+        pymunk.Poly(None, [(-10, 0), (10, 0), (0, -0.01)])
+    )
+    assert contact.points[0].distance == pytest.approx(-0.001, abs=1e-12)
+
+
 @pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0, 1e3, 1e6])
 def test_shape_queries_at_any_scale(size):
     rng = np.random.default_rng(12)

@@ -21,9 +21,7 @@ ROUNDOFF = 4e-16
 # curvature of a sharp end, and as many for segments that graze.
 MAX_STEPS = 100
 
-# A contact to be settled is at most this far from where it should be (radians), ten times what
-# the climb leaves, and its distance by this part of the longer semi-axis.
-LARGEST_TURN = 1e-5
+# Settling a contact changes its distance by less than this part of the longer semi-axis.
 LARGEST_CHANGE = 1e-9
 
 # From this many semi-axes away an ellipse is a point to double precision.
@@ -151,29 +149,22 @@ def segment_hit(
     if hypot(x + along * ux, y + along * uy) > 1.001 * reach + roundoff:
         return None
 
-    # Skip the way to it, for less roundoff: the point there is outside.
-    skipped = along - 2.0 * reach
-    if skipped > 0.0:
-        x += skipped * ux
-        y += skipped * uy
-    else:
-        skipped = 0.0
-        distance, nx, ny, _px, _py = nearest_on_axes(a, b, x, y)
-        if distance <= radius:
-            if distance < 0.0:
-                nx = -nx
-                ny = -ny
-            return 0.0, c * nx - s * ny, s * nx + c * ny, end_x, end_y
+    distance, nx, ny, _px, _py = nearest_on_axes(a, b, x, y)
+    if distance <= radius:
+        if distance < 0.0:
+            nx = -nx
+            ny = -ny
+        return 0.0, c * nx - s * ny, s * nx + c * ny, end_x, end_y
 
     if radius == 0.0:
         way = way_to_ellipse(a, b, x, y, ux, uy)
     else:
         way = way_to_offset(a, b, x, y, ux, uy, radius)
-    if way is None or skipped + way > length:
+    if way is None or way > length:
         return None
     _distance, nx, ny, px, py = nearest_on_axes(a, b, x + way * ux, y + way * uy)
     return (
-        (skipped + way) / length,
+        way / length,
         c * nx - s * ny,
         s * nx + c * ny,
         cx + c * px - s * py,
@@ -237,8 +228,8 @@ def settled(ellipse: Frame, other: Frame, contact: Contact) -> Contact:
 
     The climb ends when the distance is settled, whose error is the square of the normal's;
     after this the normal and the point are as exact. other may be a circle, or the round
-    corner of a shape that is touched there. A contact that is not near one of these two comes
-    back as it was.
+    corner of a shape that is touched there. If they do not have this contact, it comes back as
+    it was.
     """
     a1, b1, c1, s1, x1, y1 = ellipse
     a2, b2, c2, s2, x2, y2 = other
@@ -252,12 +243,10 @@ def settled(ellipse: Frame, other: Frame, contact: Contact) -> Contact:
     my = c1 * ny - s1 * nx
     for _ in range(2):
         f, slope, between, mx, my, px, py = fitted_circles(pair, mx, my)
-        if not abs(slope) <= LARGEST_TURN * between:
-            return contact
         turn = slope / between if between > 0.0 else 0.0
         mx, my = mx - turn * my, my + turn * mx
     f, _slope, _between, mx, my, px, py = fitted_circles(pair, mx, my)
-    if abs(f - distance) > LARGEST_CHANGE * a1:
+    if not abs(f - distance) <= LARGEST_CHANGE * a1:
         return contact
     return (
         f,

@@ -542,7 +542,7 @@ print(json.dumps({{
     ("name", "field"),
     [
         ("BODY_TRANSFORM", "a body's transform"),
-        ("SHAPE_MASS", "a shape's mass, moment, center of gravity and area"),
+        ("SHAPE_MASS", "a shape's mass"),
         ("SEGMENT_TANGENTS", "a segment's neighbors"),
         ("POLYGON_RADIUS", "a polygon's radius"),
     ],

@@ -87,14 +87,15 @@ def exact_contacts(pairs: Floats, count: int = 720) -> Floats:
         normals = np.arctan2(a[:, None] * np.sin(t), b[:, None] * np.cos(t))
         angles.append((normals + turned[:, None]) % (2.0 * pi))
     directions = np.sort(np.concatenate(angles, axis=1), axis=1)
+    # Two on either side, because both ellipses may give the same direction.
     directions = np.concatenate(
-        (directions[:, -1:] - 2.0 * pi, directions, directions[:, :1] + 2.0 * pi),
+        (directions[:, -2:] - 2.0 * pi, directions, directions[:, :2] + 2.0 * pi),
         axis=1,
     )
-    best = 1 + np.argmax(supports(pairs, directions)[:, 1:-1], axis=1)
+    best = 2 + np.argmax(supports(pairs, directions)[:, 2:-2], axis=1)
     rows = np.arange(len(pairs))
-    low = directions[rows, best - 1][:, None]
-    high = directions[rows, best + 1][:, None]
+    low = directions[rows, best - 2][:, None]
+    high = directions[rows, best + 2][:, None]
     for _ in range(60):
         middle = (low + high) / 2.0
         rising = slopes(pairs, middle) > 0.0

@@ -14,6 +14,9 @@ LARGEST_SEMI_AXIS = 1e50
 # The contact of a thinner ellipse would drown in roundoff: its depth is right to about 1e-15 of the longer semi-axis.
 LARGEST_ASPECT_RATIO = 1e6
 
+# Farther from its body an ellipse would drown in the roundoff of its centre.
+FARTHEST_OFFSET = 1e12
+
 
 def number(name: str, value: Any) -> float:
     """value as a finite float."""
@@ -57,3 +60,15 @@ def semi_axes(a: Any, b: Any) -> tuple[float, float]:
             f"got a={result[0]!r} and b={result[1]!r}"
         )
     return result
+
+
+def offset(value: Any, a: float, b: float) -> Vec2d:
+    """value as the centre of an ellipse with these semi-axes, in body local coordinates."""
+    center = point("offset", value)
+    farthest = FARTHEST_OFFSET * min(a, b)
+    if max(abs(center.x), abs(center.y)) > farthest:
+        raise ValueError(
+            f"offset must not be farther than {FARTHEST_OFFSET:.0e} of the shorter semi-axis, "
+            f"which is {farthest!r}, got {value!r}"
+        )
+    return center

@@ -102,12 +102,16 @@ def _unproved_of_body() -> str | None:
 
 def _unproved_of_shape(shape: pymunk.Shape, kind: int) -> str | None:
     shape.mass = 1.75
-    mass = shape.mass, shape.moment / shape.mass, *shape.center_of_gravity, shape.area
-    if _mismatch(shape._shape, SHAPE_MASS, mass):
-        return "a shape's mass, moment, center of gravity and area"
     shape.surface_velocity = 3.25, -4.75
-    if _mismatch(shape._shape, SHAPE_SURFACE_VELOCITY, (3.25, -4.75)):
-        return "a shape's surface velocity"
+    for name, offset, expected in (
+        ("mass", SHAPE_MASS, (1.75,)),
+        ("moment", SHAPE_MOMENT_PER_MASS, (shape.moment / shape.mass,)),
+        ("center of gravity", SHAPE_CENTER_OF_GRAVITY, shape.center_of_gravity),
+        ("area", SHAPE_AREA, (shape.area,)),
+        ("surface velocity", SHAPE_SURFACE_VELOCITY, (3.25, -4.75)),
+    ):
+        if _mismatch(shape._shape, offset, expected):
+            return f"a shape's {name}"
     if _at(_at(shape._shape, SHAPE_CLASS, "void *")[0], 0, "int")[0] != kind:
         return "a shape's kind"
     shape.update(_TRANSFORM)
@@ -120,8 +124,10 @@ def _unproved_of_circle() -> str | None:
     problem = _unproved_of_shape(circle, CIRCLE)
     if problem:
         return problem
-    if _mismatch(circle._shape, CIRCLE_CENTER, (center.x, center.y, circle.radius)):
-        return "a circle's center and radius"
+    if _mismatch(circle._shape, CIRCLE_CENTER, center):
+        return "a circle's center"
+    if _mismatch(circle._shape, CIRCLE_RADIUS, (circle.radius,)):
+        return "a circle's radius"
     return None
 
 
@@ -134,7 +140,8 @@ def _unproved_of_segment() -> str | None:
     if problem:
         return problem
     for name, offset, expected in (
-        ("ends", SEGMENT_START, (start.x, start.y, end.x, end.y)),
+        ("start", SEGMENT_START, start),
+        ("end", SEGMENT_END, end),
         ("radius", SEGMENT_RADIUS, (7.25,)),
         ("neighbors", SEGMENT_TANGENTS, (10.0, 11.0, 13.0, 13.0)),
     ):

@@ -99,7 +99,7 @@ class Ellipse(pymunk.Poly):
 
     def _set_frame(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._a, self._b = _checks.semi_axes(a, b)
-        self._offset = _checks.point("offset", offset)
+        self._offset = _checks.offset(offset, self._a, self._b)
         self._angle = _checks.number("angle", angle)
         longer = self._angle if self._a >= self._b else self._angle + pi / 2.0
         self._frame: Frame = (

@@ -453,9 +453,6 @@ def test_any_finite_shape(a, b, x, y, angle, body_x, body_y, px, py):
         assert hit is None or all(map(isfinite, numbers_in(tuple(hit))))
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the error is about the hull, which the user does not know"
-)
 def test_offset_that_swallows_the_ellipse_is_named():
     with pytest.raises(ValueError, match="offset"):
         Ellipse(None, 1, 1, (2.0**52, 0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import acos, sqrt
 
-from .common_normal import TINY, climb, fitted_circles, sweep
+from .common_normal import ROUNDOFF, TINY, climb, fitted_circles, sweep
 from .ellipse_ellipse import Contact, ellipse_ellipse
 
 # Distance, normal from the ellipse (x, y), contact point on it from its centre (x, y),
@@ -103,7 +103,8 @@ def ellipse_polygon(
                 pair, cone[0], cone[1], extent, cone, best, nx, ny, margin
             )
             evaluations += swept
-            if g > best:
+            # At its ends the cone's f is that of a face, and roundoff must not make a vertex of it.
+            if g > best + 4.0 * ROUNDOFF * (a + radius):
                 best, nx, ny, feature = g, ux, uy, i
                 _f, _slope, _between, nx, ny, px, py = fitted_circles(pair, nx, ny)
 
@@ -150,6 +151,7 @@ def ellipse_segment(
     f, nx, ny, px, py, evaluations, feature = ellipse_line(
         a, b, c, s, cx, cy, start_x, start_y, end_x, end_y, radius, margin
     )
+    joint = feature
     if feature == 0 and nx * before_x + ny * before_y < 0.0:
         end_x = start_x + before_x
         end_y = start_y + before_y
@@ -162,7 +164,8 @@ def ellipse_segment(
     f, nx, ny, px, py, more, feature = ellipse_line(
         a, b, c, s, cx, cy, start_x, start_y, end_x, end_y, radius, margin
     )
-    if feature != FACE:
+    # Where two of a chain meet, roundoff may let each leave the contact to the other.
+    if feature != FACE and feature != joint:
         f = UNTOUCHED
     return f, nx, ny, px, py, evaluations + more
 

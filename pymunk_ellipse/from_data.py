@@ -14,7 +14,7 @@ from . import _checks
 
 
 class EllipseParameters(NamedTuple):
-    """What an Ellipse is made of, in the order of its arguments: Ellipse(body, *parameters)."""
+    """What an Ellipse is made of, in the order of its arguments, as in ``Ellipse(body, *parameters)``."""
 
     a: float
     b: float

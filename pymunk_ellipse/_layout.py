@@ -70,7 +70,8 @@ def unproved() -> str | None:
     if ffi.sizeof("void *") != 8:
         return "pointers are not 64 bits wide"
     return (
-        _unproved_of_body()
+        _unproved_of_kinds()
+        or _unproved_of_body()
         or _unproved_of_circle()
         or _unproved_of_segment()
         or _unproved_of_polygon()
@@ -78,6 +79,21 @@ def unproved() -> str | None:
 
 
 _TRANSFORM = Transform(0.6, 0.8, -0.8, 0.6, 31.5, 47.25)
+
+
+def _unproved_of_kinds() -> str | None:
+    # The pointer to a shape's class, before it is followed: one for each kind, and none of them
+    # null or a small number.
+    shapes = (
+        pymunk.Circle(None, 1.0),
+        pymunk.Circle(None, 2.0),
+        pymunk.Segment(None, (0.0, 0.0), (1.0, 0.0), 1.0),
+        pymunk.Poly.create_box(None),
+    )
+    classes = [address(_at(shape._shape, SHAPE_CLASS, "void *")[0]) for shape in shapes]
+    if min(classes) < 0x10000 or classes[0] != classes[1] or len(set(classes)) != 3:
+        return "a shape's class"
+    return None
 
 
 def _unproved_of_body() -> str | None:

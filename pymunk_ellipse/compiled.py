@@ -388,10 +388,14 @@ class _Announcement(Listener):
         pass
 
 
+# Taken from the sources when they are imported, as they are what is compiled.
+_VERSION = _version()
+
+
 def compile_pre_solve() -> Any:
     """The callback as a C function pointer for cpCollisionHandler.preSolveFunc; compiled, or taken from numba's cache."""
     pointers = numba.types.void(*[numba.types.int64] * 3)
-    function = _define(_version())
+    function = _define(_VERSION)
     with install_listener("numba:run_pass", _Announcement()):
         try:
             callback = numba.cfunc(pointers, cache=True, error_model="numpy")(function)

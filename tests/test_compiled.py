@@ -445,8 +445,6 @@ OFFSETS = [
     for name, value in vars(_layout).items()
     if name.startswith(("BODY_", "SHAPE_", "CIRCLE_", "SEGMENT_", "POLYGON_"))
     and isinstance(value, int)
-    # A field that is followed to where it points, which must not be anywhere.
-    and name != "SHAPE_CLASS"
 ]
 
 

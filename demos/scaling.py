@@ -150,5 +150,5 @@ def draw(times: Raced, names: list[str], sizes: tuple[int, ...]) -> Figure:
         axes.minorticks_off()
         axes.set_xlabel("bodies")
         axes.spines[["top", "right"]].set_visible(False)
-    step_axes.legend()
+    step_axes.legend(loc="lower right")
     return figure

@@ -18,6 +18,9 @@ from matplotlib.lines import Line2D
 from tqdm import tqdm
 
 from pymunk_ellipse import Ellipse, backend
+from pymunk_ellipse.narrowphase import common_normal
+from pymunk_ellipse.narrowphase.common_normal import TURN_TOLERANCE
+from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 
 from ._methods import Method, Pairs, Score, methods, random_pairs, score
 from ._picture import OUTLINE, save
@@ -61,6 +64,7 @@ ROUNDOFF = 1e-15
 def run(out: Path, quick: bool) -> None:
     """Time and compare all methods; a quick run has fewer pairs, rounds and scenes, and compiles nothing."""
     contacts(out, quick)
+    tolerances(out, quick)
     scenes(out, quick)
 
 
@@ -249,6 +253,53 @@ def draw_panel(axes: Axes, scores: Scores, accuracy: Accuracy) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.spines[["top", "right"]].set_visible(False)
+
+
+# Of the last turn (radians), the package's own among them.
+TOLERANCES = 1e-1, 1e-2, 1e-3, 1e-4, TURN_TOLERANCE, 1e-8
+
+
+def tolerances(out: Path, quick: bool) -> None:
+    """What the package's tolerance costs and gives: evaluations and errors, from the normal of a step before."""
+    path = out / "speed_accuracy_tolerances.csv"
+    print(
+        "evaluations per contact (mean), worst normal (rad) and depth (b), by tolerance"
+    )
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(("aspect ratio", "tolerance", "evaluations", "normal", "depth"))
+        for ratio in QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS:
+            pairs = random_pairs(ratio, *DEPTHS, 30 if quick else 400, SEED)
+            numbers = pairs.numbers.tolist()
+            for tolerance in TOLERANCES:
+                evaluations = 0
+                normal = depth = 0.0
+                with replaced((common_normal, "TURN_TOLERANCE", tolerance)):
+                    for pair, start, exact in zip(
+                        numbers, pairs.warm.tolist(), pairs.exact.tolist(), strict=True
+                    ):
+                        a1, b1, *second = pair
+                        frame = a1, b1, 1.0, 0.0
+                        found = ellipse_ellipse(*frame, *second, *start, 0.0)
+                        evaluations += found[5]
+                        sine = found[1] * exact[2] - found[2] * exact[1]
+                        normal = max(normal, abs(sine))
+                        depth = max(depth, abs(-found[0] - exact[0]))
+                mean_evaluations = evaluations / len(pairs)
+                rows.writerow(
+                    (
+                        ratio,
+                        tolerance,
+                        f"{mean_evaluations:.2f}",
+                        f"{normal:.1e}",
+                        f"{depth:.1e}",
+                    )
+                )
+                print(
+                    f"  aspect ratio {ratio:<4g} tolerance {tolerance:.0e}: "
+                    f"{mean_evaluations:5.2f}, {normal:.1e}, {depth:.1e}"
+                )
+    print(f"table: {path}")
 
 
 POLYGONS = 8, 16, 32, 64, 128

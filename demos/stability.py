@@ -34,7 +34,7 @@ from ._variants import VARIANTS, shipped
 SEGMENT_LENGTHS = 0.5, 1.0, 2.0, 5.0
 # By how much the step of a scene is made larger.
 LARGE_STEP = 4.0
-QUICK_WAYS = "ellipse", "no warm start", "16-gon"
+QUICK_WAYS = "ellipse", "16-gon"
 # Long runs in Python that a quick run leaves out.
 LONG = ("rocking for minutes",)
 

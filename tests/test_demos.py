@@ -329,6 +329,39 @@ def test_game_draws_between_steps(no_screen):
     assert position.get_distance((before + body.position) / 2.0) < 1e-9
 
 
+@pytest.mark.demo
+def test_stability_keeps_all_bounds(quick_run):
+    _, out = quick_run("stability")
+    rows = table(out / "stability.csv")
+    assert len(rows) > 10
+    assert all(float(row["ellipse"]) <= float(row["bound"]) for row in rows)
+
+
+@pytest.mark.demo
+def test_failure_map_finds_no_wrong_contact_of_the_package(quick_run):
+    printed, _ = quick_run("failure_map")
+    wrong = number_after("part of the pairs for which the shipped method is", printed)
+    assert wrong == 0
+
+
+@pytest.mark.demo
+def test_circle_fits_arrive_at_the_same_depth(quick_run):
+    _, out = quick_run("circle_fit")
+    rows = [row for row in table(out / "circle_fit.csv") if row["sweep"] == "4"]
+    assert len(rows) == 4
+    assert all(abs(float(row["depth off"])) < 1e-12 for row in rows)
+
+
+@pytest.mark.demo
+def test_ellipses_adsorb_and_pack_more_densely_than_circles(quick_run):
+    for name, circles, aspect_ratio in ("rsa", 0.547, "1.85"), ("packing", 0.84, "1.4"):
+        printed, out = quick_run(name)
+        assert number_after("circles, of", printed) == pytest.approx(circles, rel=0.05)
+        rows = {row["aspect ratio"]: row for row in table(out / f"{name}.csv")}
+        key = "coverage" if name == "rsa" else "density"
+        assert float(rows[aspect_ratio][key]) > float(rows["1.0"][key]) + 0.01
+
+
 def test_list_names_every_demo_with_its_purpose():
     listed = python("-m", "demos", "--list")
     lines = [

@@ -209,8 +209,9 @@ def test_any_start(pair, phi, length):
     reason="the sweep ends after MAX_JUMPS without a proof, and the normal that was started from stays",
 )
 def test_start_of_a_needle_in_a_wrong_place():
-    first = Placed(5.4e-5, 1.0)
-    second = Placed(0.0407, 0.000407, 0.0128869, 0.0385828, 1.25)
+    first = Placed(5.400349594288429e-05, 1.0)
+    axes = 0.040679443210830474, 0.00040679443210830474
+    second = Placed(*axes, 0.012886949411656383, 0.03858283624871176, 1.25)
     expected = contact(first, second).distance
     found = contact(first, second, start=(cos(2.25), sin(2.25))).distance
     assert found == pytest.approx(expected, abs=1e-6)

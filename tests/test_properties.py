@@ -204,10 +204,6 @@ def test_any_start(pair, phi, length):
     assert found.distance == pytest.approx(expected.distance, abs=tolerance)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the sweep ends after MAX_JUMPS without a proof, and the normal that was started from stays",
-)
 def test_start_of_a_needle_in_a_wrong_place():
     first = Placed(5.400349594288429e-05, 1.0)
     axes = 0.040679443210830474, 0.00040679443210830474

@@ -25,8 +25,11 @@ from math import acos, atan2, cos, pi, sin, sqrt
 Pair = tuple[float, float, float, float, float, float, float, float]
 Cone = tuple[float, float, float, float]
 
-# The fit ends when the next turn of the normal is smaller (radians); the depth is then off by about its square.
+# The fit ends when the next turn of the normal is smaller (radians), and promises to change the
+# depth by less than this part of the shorter semi-axis: where circles are large, a small turn
+# moves the contact far.
 TURN_TOLERANCE = 1e-6
+RISE_TOLERANCE = 1e-9
 
 # A larger turn is cut to this (radians, nearly): Newton's step does not see past a sharp end.
 MAX_TURN = 0.5
@@ -132,6 +135,7 @@ def climb(
     """
     first_x, first_y, last_x, last_y = cone
     noise = ROUNDOFF * (pair[0] + pair[2])
+    least_rise = RISE_TOLERANCE * pair[1]
     f, slope, between, nx, ny, px, py = fitted_circles(pair, nx, ny)
     evaluations = 1
     for _ in range(MAX_TURNS):
@@ -149,15 +153,15 @@ def climb(
             # Near a minimum of f Newton's step leads downhill.
             turn = MAX_TURN if slope >= 0.0 else -MAX_TURN
 
-        enough = SUFFICIENT_RISE * slope
+        promise = slope
         uphill = False
-        while abs(turn) > TURN_TOLERANCE:
+        while abs(turn) > TURN_TOLERANCE or turn * promise > least_rise:
             mx = nx - turn * ny
             my = ny + turn * nx
             if first_x * my >= first_y * mx and mx * last_y >= my * last_x:
                 g, slope, between, mx, my, qx, qy = fitted_circles(pair, mx, my)
                 evaluations += 1
-                if g >= f + enough * turn - noise:
+                if g >= f + SUFFICIENT_RISE * promise * turn - noise:
                     uphill = True
                     break
             turn *= 0.5

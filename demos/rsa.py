@@ -21,7 +21,8 @@ from ._picture import save
 ASPECT_RATIOS = 1.0, 1.3, 1.85, 2.6, 4.0
 QUICK_ASPECT_RATIOS = 1.0, 1.85, 4.0
 # Saturated coverage of circles (J. Feder, 1980, and many since), and the aspect ratio of the
-# highest one (P. Viot and others, 1992; K. Haiduk, P. Kubala and M. Ciesla, 2018).
+# highest one (P. Viot and others, 1992; P. Abritta and R. S. Hoy, "Structure of saturated RSA
+# ellipse packings", 2022).
 CIRCLES = 0.547
 DENSEST = 1.85
 # The area of the square, by that of an ellipse.

@@ -1,0 +1,30 @@
+"""Joblib's Dask backend, without its endless wait for a run that was lost with its workers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from joblib._dask import DaskDistributedBackend
+
+
+class DaskBackend(DaskDistributedBackend):
+    """Tells joblib of the error, too, when Dask gives a run up."""
+
+    def submit(
+        self, func: Callable[..., Any], callback: Callable[[Any], None]
+    ) -> Future[Any]:
+        def done(future: Future[Any]) -> None:
+            # Joblib 1.6 calls back only for results, and waits for the others for ever.
+            if (error := future.exception()) is not None:
+                callback(error)
+
+        future = super().submit(func, callback)
+        future.add_done_callback(done)
+        return future
+
+    def retrieve_result_callback(self, out: Any) -> Any:
+        if isinstance(out, BaseException):
+            raise out
+        return super().retrieve_result_callback(out)

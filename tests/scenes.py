@@ -104,6 +104,20 @@ def data_in_a_copy():
     return _noted.pop()
 
 
+@cache
+def calls_of_wildcard():
+    """How often pymunk calls back for (1, None) when two shapes of the type 1 touch: once before 7.1.0, then for each."""
+    space = make_space()
+    for _ in range(2):
+        circle = pymunk.Circle(add_body(space, mass=1, moment=1), 1)
+        circle.collision_type = 1
+        space.add(circle)
+    calls = []
+    space.on_collision(1, None, pre_solve=lambda *arguments: calls.append(arguments))
+    space.step(1 / 120)
+    return len(calls)
+
+
 _noted = []
 
 

@@ -11,7 +11,14 @@ from typing import NamedTuple
 
 import pymunk
 import pytest
-from scenes import FLOOR, add_body, add_ellipse, add_floor, data_in_a_copy
+from scenes import (
+    FLOOR,
+    add_body,
+    add_ellipse,
+    add_floor,
+    calls_of_wildcard,
+    data_in_a_copy,
+)
 
 import pymunk_ellipse
 from pymunk_ellipse import Ellipse
@@ -202,7 +209,7 @@ def calls_for(pair, key):
     if a is None:
         return 1
     if b is None:
-        return (one == a) + (two == a)
+        return min((one == a) + (two == a), calls_of_wildcard())
     return int(key in ((one, two), (two, one)))
 
 
@@ -1182,6 +1189,7 @@ def test_copies_go_on_with_their_own_events(way, key):
     assert phases_of(seen) == ["separate"]
 
 
+@LOST
 @pytest.mark.parametrize("way", WAYS)
 def test_copy_of_two_that_touch_ends_the_touch(way):
     """Also if they part, or one goes, before the copy has made a step with them touching."""

@@ -109,17 +109,22 @@ class Box:
 
 
 def filled_box(
-    make_shape: MakeShape, reach: float, count: int, columns: int, seed: int = 1
+    make_shape: MakeShape,
+    reach: float,
+    count: int,
+    columns: int,
+    seed: int = 1,
+    space: pymunk.Space | None = None,
 ) -> Box:
     """A box above whose floor count shapes hang in a grid, at random angles, about to fall.
 
     reach is the distance from a body to the farthest point of its shape: there is a GAP between
     any two, whatever their angles. Half of it is random, so that circles do not fall into
-    columns that only roundoff makes buckle.
+    columns that only roundoff makes buckle. The space is a plain one if none is given.
     """
     pitch = pitch_of_grid(reach)
     rng = random.Random(seed)
-    box = Box(columns * pitch)
+    box = Box(columns * pitch, space or pymunk.Space())
     for i in range(count):
         row, column = divmod(i, columns)
         shift = rng.uniform(-GAP / 4.0, GAP / 4.0)

@@ -124,6 +124,15 @@ def test_speed_times_every_kind_of_shape(quick_run):
 
 
 @pytest.mark.demo
+def test_callbacks_are_called_as_often_on_ellipses(quick_run):
+    printed, _ = quick_run("callbacks")
+    calls = [float(n) for n in re.findall(r"callbacks +[0-9.]+ +([0-9.]+)", printed)]
+    assert len(calls) == 2
+    assert min(calls) > 0
+    assert max(calls) < 2 * min(calls)
+
+
+@pytest.mark.demo
 def test_scaling_compares_the_cost_per_contact(quick_run):
     printed, out = quick_run("scaling")
     rows = table(out / "scaling.csv")

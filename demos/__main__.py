@@ -53,6 +53,22 @@ def main() -> None:
         action="store_true",
         help="open the game or a scene in a window instead",
     )
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        metavar="N",
+        help="for a sweep: how many runs at once (default: 1)",
+    )
+    parser.add_argument(
+        "--backend",
+        choices=["loky", "dask"],
+        help="for a sweep: processes of this machine, or workers of Dask (default: loky)",
+    )
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="for a sweep: that of a Dask cluster (default: one is started here)",
+    )
     arguments = parser.parse_args()
     name = arguments.name
     if arguments.list:
@@ -66,13 +82,30 @@ def main() -> None:
     else:
         package = "demos.scenes" if name in scenes else "demos"
         run = import_module(f"{package}.{name}").run
-        if not arguments.window:
-            arguments.out.mkdir(parents=True, exist_ok=True)
-            run(arguments.out, arguments.quick)
-        elif "window" in signature(run).parameters:
-            run(arguments.out, arguments.quick, window=True)
-        else:
+        takes = signature(run).parameters
+        options = {
+            option: value
+            for option in ("jobs", "backend", "scheduler")
+            if (value := getattr(arguments, option)) is not None
+        }
+        if arguments.window and "window" not in takes:
             parser.error(f"--window is for the game and the scenes, not for {name}")
+        if options and "engine" not in takes:
+            parser.error(f"--{next(iter(options))} is for sweeps, not for {name}")
+        if arguments.window:
+            run(arguments.out, arguments.quick, window=True)
+            return
+        chosen = {}
+        if options:
+            # Joblib is for the demos that sweep alone.
+            from ._sweep import Engine
+
+            try:
+                chosen["engine"] = Engine(**options)
+            except ValueError as error:
+                parser.error(str(error))
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        run(arguments.out, arguments.quick, **chosen)
 
 
 if __name__ == "__main__":

@@ -24,8 +24,6 @@ from typing import Any
 import joblib
 from tqdm import tqdm
 
-BACKENDS = "loky", "dask"
-
 
 @dataclass(frozen=True)
 class Run:
@@ -88,6 +86,9 @@ class Engine:
             yield joblib.Parallel(backend=DaskBackend(client=client), **how)
 
 
+ONE_JOB = Engine()
+
+
 def failures(path: Path) -> Path:
     """The file of the runs that failed in the last sweep that saved its results in this file."""
     return path.with_suffix(".failed.jsonl")
@@ -98,7 +99,7 @@ def sweep(
     parameters: Sequence[Mapping[str, Any]],
     seeds: Iterable[int],
     path: Path,
-    engine: Engine = Engine(),
+    engine: Engine = ONE_JOB,
 ) -> list[Run]:
     """Call a function for all parameters and seeds, and return the finished runs in that order.
 

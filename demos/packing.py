@@ -7,15 +7,16 @@ import random
 from math import pi, sqrt
 from pathlib import Path
 from statistics import mean, stdev
+from typing import Any
 
 import numpy as np
 import pymunk
 from matplotlib.figure import Figure
-from tqdm import tqdm
 
 from pymunk_ellipse import Ellipse
 
 from ._picture import draw_ellipses, save
+from ._sweep import ONE_JOB, Engine, sweep
 
 ASPECT_RATIOS = 1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2.2, 3.0, 5.0
 QUICK_ASPECT_RATIOS = 1.0, 1.4, 3.0
@@ -160,17 +161,39 @@ def jam(
     return press, inner_density(press)
 
 
-def run(out: Path, quick: bool) -> None:
-    """Jam ellipses of each aspect ratio; a quick run has fewer, and closes the walls faster."""
+def packed(aspect_ratio: float, count: int, hurry: float, seed: int) -> dict[str, Any]:
+    """A run of the sweep: the density, half the width of the box, and the ellipses in it."""
+    press, density = jam(aspect_ratio, count, seed, hurry)
+    ellipses = []
+    for ellipse in press.ellipses:
+        body = ellipse.body
+        assert body is not None
+        ellipses.append((ellipse.a, ellipse.b, *body.position, body.angle))
+    return {"density": density, "half": press.half, "ellipses": ellipses}
+
+
+def run(out: Path, quick: bool, engine: Engine = ONE_JOB) -> None:
+    """Jam ellipses of each aspect ratio; a quick run has fewer, and closes the walls faster.
+
+    Boxes that are in packing.jsonl, from a run that was stopped, are not packed again.
+    """
     ratios = QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS
     runs, count, hurry = (1, 64, 4.0) if quick else (3, 400, 1.0)
     found: dict[float, list[float]] = {ratio: [] for ratio in ratios}
-    first: dict[float, Press] = {}
-    jobs = [(ratio, i) for ratio in ratios for i in range(runs)]
-    for ratio, i in tqdm(jobs, "packing", unit="box"):
-        press, density = jam(ratio, count, 1000 * SEED + i, hurry)
-        found[ratio].append(density)
-        first.setdefault(ratio, press)
+    first: dict[float, dict[str, Any]] = {}
+    boxes = sweep(
+        packed,
+        [{"aspect_ratio": r, "count": count, "hurry": hurry} for r in ratios],
+        range(1000 * SEED, 1000 * SEED + runs),
+        out / "packing.jsonl",
+        engine,
+    )
+    if len(boxes) < len(ratios) * runs:
+        raise SystemExit("not all boxes were packed: the next run tries the others")
+    for box in boxes:
+        ratio = box.parameters["aspect_ratio"]
+        found[ratio].append(box.value["density"])
+        first.setdefault(ratio, box.value)
     errors = {
         ratio: stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
         for ratio, values in found.items()
@@ -197,7 +220,7 @@ def run(out: Path, quick: bool) -> None:
 
 
 def draw(
-    found: dict[float, list[float]], errors: dict[float, float], press: Press
+    found: dict[float, list[float]], errors: dict[float, float], box: dict[str, Any]
 ) -> Figure:
     """Density over aspect ratio, and the densest packing."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")
@@ -216,12 +239,21 @@ def draw(
     left.set_ylabel("part of the middle that is covered")
     left.legend()
     left.spines[["top", "right"]].set_visible(False)
-    draw_ellipses(right, press.ellipses)
-    right.set_xlim(-press.half, press.half)
-    right.set_ylim(-press.half, press.half)
+    ellipses = []
+    # Holds the bodies, which an ellipse alone does not.
+    space = pymunk.Space()
+    for a, b, x, y, angle in box["ellipses"]:
+        body = pymunk.Body()
+        body.position = x, y
+        body.angle = angle
+        ellipses.append(Ellipse(body, a, b))
+        space.add(body, ellipses[-1])
+    draw_ellipses(right, ellipses)
+    right.set_xlim(-box["half"], box["half"])
+    right.set_ylim(-box["half"], box["half"])
     right.set_aspect("equal")
     right.set_xticks([])
     right.set_yticks([])
-    ratio = press.ellipses[0].a / press.ellipses[0].b
+    ratio = ellipses[0].a / ellipses[0].b
     right.set_title(f"jammed, aspect ratio {ratio:.3g}")
     return figure

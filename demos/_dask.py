@@ -1,4 +1,4 @@
-"""Joblib's Dask backend, without its endless wait for a run that was lost with its workers."""
+"""Joblib's Dask backend, made to stop when a run is lost, and to run on the smallest cluster."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ from joblib._dask import DaskDistributedBackend
 
 class DaskBackend(DaskDistributedBackend):
     """Tells joblib of the error, too, when Dask gives a run up."""
+
+    def effective_n_jobs(self, n_jobs: int) -> int:
+        # For a single one, joblib would run all here, and nothing on a cluster of one thread.
+        return max(2, super().effective_n_jobs(n_jobs))
 
     def submit(
         self, func: Callable[..., Any], callback: Callable[[Any], None]

@@ -79,7 +79,8 @@ class Engine:
                     LocalCluster(
                         n_workers=self.jobs,
                         threads_per_worker=1,
-                        dashboard_address=None,
+                        # Any free port: that of Dask's choice may be another cluster's.
+                        dashboard_address="localhost:0",
                     )
                 )
             client = stack.enter_context(Client(where, set_as_default=False))

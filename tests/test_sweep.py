@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -42,6 +44,10 @@ def deadly(log: str, seed: int) -> int:
     if seed == 5 and len(list(Path(log).glob("5-*"))) == 1:
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
     return seed * seed
+
+
+def process(seed: int) -> int:
+    return os.getpid()
 
 
 def always_deadly(seed: int) -> int:
@@ -156,6 +162,24 @@ def test_engines_that_cannot_be_are_refused():
         Engine(scheduler="tcp://127.0.0.1:8786")
 
 
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ("pile --jobs 2", "--jobs is for sweeps, not for pile"),
+        ("packing --scheduler tcp://127.0.0.1:8786", "a scheduler is for dask"),
+    ],
+)
+def test_command_line_refuses_what_it_would_not_heed(arguments, message):
+    finished = subprocess.run(
+        [sys.executable, "-m", "demos", *arguments.split()],
+        cwd=Path(__file__).parent.parent,
+        capture_output=True,
+        encoding="utf-8",
+    )
+    assert finished.returncode == 2
+    assert message in finished.stderr
+
+
 @pytest.fixture(scope="module")
 def cluster():
     """Two worker processes and a scheduler."""
@@ -163,7 +187,7 @@ def cluster():
         "dask.distributed", reason="the cluster is Dask's"
     )
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None
+        n_workers=2, threads_per_worker=1, dashboard_address="localhost:0"
     ) as cluster:
         yield cluster
 
@@ -178,6 +202,12 @@ def test_a_killed_worker_loses_nothing(tmp_path, log, cluster):
     lines = [json.loads(line) for line in path.read_text("utf-8").splitlines()]
     assert sorted(line["seed"] for line in lines) == list(range(12))
     assert not failures(path).exists()
+
+
+def test_a_cluster_of_one_thread_is_used(tmp_path):
+    pytest.importorskip("dask.distributed", reason="the cluster is Dask's")
+    runs = sweep(process, [{}], range(3), tmp_path / "runs.jsonl", Engine(1, "dask"))
+    assert len({run.value for run in runs} - {os.getpid()}) == 1
 
 
 def test_a_run_that_kills_every_worker_ends_the_sweep(tmp_path, cluster):

@@ -1,0 +1,45 @@
+"""Imports: no modules in a circle, and no warnings."""
+
+import ast
+import graphlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pymunk_ellipse
+
+PACKAGE = Path(pymunk_ellipse.__file__).parent
+
+
+def imports():
+    """Each module's imports from this package, by their dotted names; those inside functions, too."""
+    modules = {
+        ".".join(path.relative_to(PACKAGE).with_suffix("").parts): path
+        for path in PACKAGE.rglob("*.py")
+    }
+    graph = {name: set() for name in modules}
+    for name, path in modules.items():
+        package = name.split(".")[:-1]
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                above = package[: len(package) - node.level + 1]
+                source = ".".join([*above, *filter(None, [node.module])])
+                # From a package comes a module of it, or what its __init__ has.
+                for alias in node.names:
+                    submodule = f"{source}.{alias.name}".lstrip(".")
+                    graph[name].add(submodule if submodule in modules else source)
+    return graph
+
+
+def test_no_circles():
+    graph = imports()
+    assert sum(map(len, graph.values())) > 40
+    for sources in graph.values():
+        assert sources <= set(graph) | {"narrowphase"}
+    # Raises CycleError.
+    tuple(graphlib.TopologicalSorter(graph).static_order())
+
+
+def test_no_warnings():
+    code = "import pymunk, pymunk_ellipse; pymunk_ellipse.backend()"
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=300)

@@ -453,6 +453,8 @@ def test_any_finite_shape(a, b, x, y, angle, body_x, body_y, px, py):
     body = pymunk.Body()
     body.position, body.angle = (body_x, body_y), angle
     names = ("a", "b", "offset", "angle")
+    # Farther away the distance itself is no longer finite.
+    assume(max(map(abs, (body_x, body_y, px, py))) < 1e300)
     # Beyond that the hull has no room: see the next test.
     assume(max(abs(x), abs(y)) < 1e9 * min(abs(a), abs(b)))
     shape = result_or_error(Ellipse, body, a, b, (x, y), angle, names=names)
@@ -465,6 +467,15 @@ def test_any_finite_shape(a, b, x, y, angle, body_x, body_y, px, py):
         assert all(map(isfinite, numbers_in(found)))
     for hit in (shape.point_query((px, py)), shape.segment_query((px, py), (x, y), 1)):
         assert hit is None or all(map(isfinite, numbers_in(tuple(hit))))
+
+
+def test_shapes_of_most_different_sizes():
+    """Where the tolerance of the smaller is below the roundoff of the larger."""
+    large = Ellipse(pymunk.Body(), 5247575981056985.0, 5397043457852179.0, (1, -1))
+    for angle in range(100):
+        large.unsafe_set_angle(0.0628 * angle)
+        found = large.shapes_collide(Ellipse(None, 2, 1))
+        assert all(map(isfinite, numbers_in(found.points[0].distance)))
 
 
 def test_offset_that_swallows_the_ellipse_is_named():

@@ -195,9 +195,10 @@ def sweep(
 
     Returns the largest f, its n (x, y) and the number of evaluations.
     """
-    _a1, b1, _a2, b2, _c, _s, _dx, _dy = pair
+    a1, b1, a2, b2, _c, _s, _dx, _dy = pair
     r = sharpest(pair)
     slack = DEPTH_TOLERANCE * (b2 if 0.0 < b2 < b1 else b1)
+    slack = max(slack, ROUNDOFF * (a1 + a2))
     evaluations = 0
     swept = 0.0
     for _ in range(MAX_JUMPS):
@@ -210,7 +211,8 @@ def sweep(
         reach = sqrt((f + r) * (f + r) + slope * slope)
         if best > margin or ceiling >= reach:
             break
-        jump = (atan2(slope, f + r) - acos(ceiling / reach)) % (2.0 * pi)
+        crossing = acos(max(-1.0, ceiling / reach))
+        jump = (atan2(slope, f + r) - crossing) % (2.0 * pi)
         swept += jump
         if swept >= extent:
             break

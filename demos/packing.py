@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import random
 from math import pi, sqrt
 from pathlib import Path
-from statistics import mean, stdev
+from statistics import mean
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 
 from pymunk_ellipse import Ellipse
 
+from ._densities import tell_densities
 from ._picture import draw_ellipses, save
 from ._sweep import ONE_JOB, Engine, sweep
 
@@ -194,20 +194,8 @@ def run(out: Path, quick: bool, engine: Engine = ONE_JOB) -> None:
         ratio = box.parameters["aspect_ratio"]
         found[ratio].append(box.value["density"])
         first.setdefault(ratio, box.value)
-    errors = {
-        ratio: stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
-        for ratio, values in found.items()
-    }
-    with open(out / "packing.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["aspect ratio", "density", "standard error", "boxes"])
-        for ratio, values in found.items():
-            table.writerow(
-                [ratio, f"{mean(values):.4f}", f"{errors[ratio]:.4f}", len(values)]
-            )
     print(f"{runs} boxes of {count} ellipses of two sizes, 1 : {LARGER:g}")
-    for ratio, values in found.items():
-        print(f"  aspect ratio {ratio:<4g}: {mean(values):.4f} +- {errors[ratio]:.4f}")
+    errors = tell_densities(found, out / "packing.csv", "density", "boxes")
     densest = max(found, key=lambda ratio: mean(found[ratio]))
     print(f"circles, of about {CIRCLES:g} known: {mean(found[1.0]):.4f}")
     print(f"densest aspect ratio tried, about {DENSEST:g} known: {densest:g}")

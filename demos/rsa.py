@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import random
 from math import cos, floor, pi, sin, sqrt
 from pathlib import Path
-from statistics import mean, stdev
+from statistics import mean
 
 import numpy as np
 from matplotlib.collections import EllipseCollection
@@ -16,6 +15,7 @@ from tqdm import tqdm
 
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 
+from ._densities import tell_densities
 from ._picture import save
 
 ASPECT_RATIOS = 1.0, 1.3, 1.85, 2.6, 4.0
@@ -138,20 +138,8 @@ def run(out: Path, quick: bool) -> None:
         surface = Surface(ratio, random.Random(1000 * SEED + i))
         found[ratio].append(saturated(surface, attempts)[0])
         first.setdefault(ratio, surface)
-    errors = {
-        ratio: stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
-        for ratio, values in found.items()
-    }
-    with open(out / "rsa.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["aspect ratio", "coverage", "standard error", "runs"])
-        for ratio, values in found.items():
-            table.writerow(
-                [ratio, f"{mean(values):.4f}", f"{errors[ratio]:.4f}", len(values)]
-            )
     print(f"{runs} squares of {AREA:g} ellipses' area for each aspect ratio")
-    for ratio, values in found.items():
-        print(f"  aspect ratio {ratio:<4g}: {mean(values):.4f} +- {errors[ratio]:.4f}")
+    errors = tell_densities(found, out / "rsa.csv", "coverage", "runs")
     densest = max(found, key=lambda ratio: mean(found[ratio]))
     print(f"circles, of {CIRCLES:g} known: {mean(found[1.0]):.4f}")
     print(f"densest aspect ratio tried, {DENSEST:g} known: {densest:g}")

@@ -69,11 +69,11 @@ class Touches:
         # As it is when Chipmunk calls separate: without contact points, and with the normal of
         # the last touch.
         arbiter.state = CACHED
-        shape, nx, ny = self.normals.pop(arbiter, (arbiter.a, None, None))
-        if nx is not None and ny is not None:
-            sign = 1.0 if shape == arbiter.a else -1.0
-            arbiter.n.x = sign * nx
-            arbiter.n.y = sign * ny
+        normal = arbiter.n
+        last = self.normals.pop(arbiter, (arbiter.a, normal.x, normal.y))
+        sign = 1.0 if last[0] == arbiter.a else -1.0
+        normal.x = sign * last[1]
+        normal.y = sign * last[2]
         self._tell("separate", arbiter, space)
         arbiter.state = IGNORE
         # What a callback set lasts until the two part.

@@ -1,8 +1,10 @@
 """Shapes as plain numbers, and the package's narrow phase on them."""
 
-from math import cos, hypot, inf, pi, sin
+from contextlib import contextmanager
+from math import cos, hypot, pi, sin
 from typing import NamedTuple
 
+from pymunk_ellipse.narrowphase import common_normal
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 from pymunk_ellipse.narrowphase.ellipse_polygon import ellipse_polygon, ellipse_segment
 
@@ -25,22 +27,21 @@ class Round(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A contact: distance, unit normal from the ellipse, point on the ellipse, evaluations."""
+    """A contact: distance, unit normal from the ellipse, point on the ellipse."""
 
     distance: float
     nx: float
     ny: float
     x: float
     y: float
-    evaluations: int
 
 
 def frame(ellipse):
-    """Semi-axes, the longer first, and the unit vector along it."""
-    a, b, _x, _y, angle = ellipse
+    """Semi-axes, the longer first, the unit vector along it and the centre."""
+    a, b, x, y, angle = ellipse
     if a < b:
         a, b, angle = b, a, angle + pi / 2
-    return a, b, cos(angle), sin(angle)
+    return a, b, cos(angle), sin(angle), x, y
 
 
 def splitting_planes(vertices):
@@ -53,28 +54,37 @@ def splitting_planes(vertices):
     return planes
 
 
-def contact(ellipse, other, start=(0.0, 0.0), margin=inf):
+def contact(ellipse, other, start=(0.0, 0.0)):
     """The contact of an ellipse with another shape, by the narrow phase."""
+    at = frame(ellipse)
     if isinstance(other, Placed):
-        dx, dy = other.x - ellipse.x, other.y - ellipse.y
-        numbers = ellipse_ellipse(
-            *frame(ellipse), *frame(other), dx, dy, *start, margin
-        )
-    elif len(other.vertices) == 1:
-        ((x, y),) = other.vertices
-        round_frame = (other.radius, other.radius, 1.0, 0.0)
-        dx, dy = x - ellipse.x, y - ellipse.y
-        numbers = ellipse_ellipse(*frame(ellipse), *round_frame, dx, dy, *start, margin)
-    elif len(other.vertices) == 2:
-        first, second = other.vertices
-        alone = (0.0, 0.0, 0.0, 0.0)
-        at = (*frame(ellipse), ellipse.x, ellipse.y)
-        numbers = ellipse_segment(*at, *first, *second, *alone, other.radius, margin)
-    else:
-        planes, count = splitting_planes(other.vertices), len(other.vertices)
-        at = (*frame(ellipse), ellipse.x, ellipse.y)
-        numbers = ellipse_polygon(*at, planes, count, other.radius, margin)[:6]
-    return Found(*numbers)
+        return Found(*ellipse_ellipse(at, frame(other), *start))
+    vertices, radius = other
+    if len(vertices) == 1:
+        circle = (radius, radius, 1.0, 0.0, *vertices[0])
+        return Found(*ellipse_ellipse(at, circle, *start))
+    if len(vertices) == 2:
+        alone = (0.0, 0.0)
+        return Found(*ellipse_segment(at, *vertices, alone, alone, radius))
+    planes = splitting_planes(vertices)
+    return Found(*ellipse_polygon(at, planes, len(vertices), radius))
+
+
+@contextmanager
+def counted_evaluations():
+    """Counts how often circles are fitted, in a list with one number."""
+    count = [0]
+    fitted_circles = common_normal.fitted_circles
+
+    def counting(*arguments):
+        count[0] += 1
+        return fitted_circles(*arguments)
+
+    common_normal.fitted_circles = counting
+    try:
+        yield count
+    finally:
+        common_normal.fitted_circles = fitted_circles
 
 
 def from_reference(case):

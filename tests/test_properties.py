@@ -278,7 +278,7 @@ def test_shapes(pair, places, far):
     (point,) = found.points
     assert found.normal.length == pytest.approx(1, abs=1e-14)
     assert point.distance <= tolerance
-    contact_found = Found(point.distance, *found.normal, 0.0, 0.0, 0)
+    contact_found = Found(point.distance, *found.normal, 0.0, 0.0)
     depth_error, point_error = fit_errors(*placed, contact_found)
     check_sign(point.distance, contact_function(*placed), tolerance + depth_error)
     assert off_surface(placed[0], *point.point_a) <= tolerance

@@ -22,12 +22,17 @@ from __future__ import annotations
 
 from math import acos, atan2, cos, pi, sin, sqrt
 
+from .frame import Frame
+
 Pair = tuple[float, float, float, float, float, float, float, float]
 Cone = tuple[float, float, float, float]
 
+# f, n (x, y) and the first ellipse's support point (x, y).
+Maximum = tuple[float, float, float, float, float]
+
 # The fit ends when the next turn of the normal is smaller (radians), and promises to change the
 # depth by less than this part of the shorter semi-axis: where circles are large, a small turn
-# moves the contact far.
+# moves the contact far. That turn is then made without a look at what it leads to.
 TURN_TOLERANCE = 1e-6
 RISE_TOLERANCE = 1e-9
 
@@ -53,15 +58,34 @@ TINY = 1e-290
 ALL_ROUND: Cone = (0.0, 0.0, 0.0, 0.0)
 
 
+def pair_of(first: Frame, second: Frame) -> Pair:
+    """Two ellipses in the world, brought into the frame of the first."""
+    a1, b1, c1, s1, x1, y1 = first
+    a2, b2, c2, s2, x2, y2 = second
+    dx = x2 - x1
+    dy = y2 - y1
+    return (
+        a1,
+        b1,
+        a2,
+        b2,
+        c1 * c2 + s1 * s2,
+        c1 * s2 - s1 * c2,
+        c1 * dx + s1 * dy,
+        c1 * dy - s1 * dx,
+    )
+
+
 def fitted_circles(
     pair: Pair, mx: float, my: float
-) -> tuple[float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float]:
     """Fit a circle to the first ellipse where its normal is n and to the second where it is -n.
 
     n is (mx, my) brought to unit length here, because the division need not be waited for.
 
     Returns f, its derivative f' along the counterclockwise turn of n, the distance along n
-    between the centres of the two circles, n (x, y) and the first ellipse's support point (x, y).
+    between the centres of the two circles, n (x, y), the first ellipse's support point (x, y)
+    and the radius of its circle.
 
     Support point and radius of curvature of an ellipse in the direction u are
     (a^2 ux, b^2 uy)/h and a^2 b^2/h^3, with h = sqrt(a^2 ux^2 + b^2 uy^2).
@@ -95,7 +119,7 @@ def fitted_circles(
     ny = my * shorten
     f = qx * nx + qy * ny
     slope = qy * nx - qx * ny
-    return f, slope, f + radius1 + radius2, nx, ny, p1x, p1y
+    return f, slope, f + radius1 + radius2, nx, ny, p1x, p1y, radius1
 
 
 def first_guess(pair: Pair) -> tuple[float, float]:
@@ -121,26 +145,17 @@ def sharpest(pair: Pair) -> float:
     return radius
 
 
-def climb(
-    pair: Pair, nx: float, ny: float, cone: Cone, margin: float
-) -> tuple[float, float, float, float, float, int]:
+def climb(pair: Pair, nx: float, ny: float, cone: Cone) -> Maximum:
     """Turn n uphill to a maximum of f within the cone.
 
     The cone's four numbers are the unit vectors (x, y) where it begins and, counterclockwise,
     ends; ALL_ROUND has no limits. Newton's step for f' = 0 turns n to the line that joins the
     centres of the two fitted circles; a step that leaves the cone or gains too little is halved.
-    Once f exceeds margin the two are known to be that far apart, and the climb ends.
-
-    Returns f, n (x, y), the first ellipse's support point (x, y) and the number of evaluations.
     """
-    first_x, first_y, last_x, last_y = cone
     noise = ROUNDOFF * (pair[0] + pair[2])
     least_rise = RISE_TOLERANCE * pair[1]
-    f, slope, between, nx, ny, px, py = fitted_circles(pair, nx, ny)
-    evaluations = 1
+    f, slope, between, nx, ny, px, py, radius = fitted_circles(pair, nx, ny)
     for _ in range(MAX_TURNS):
-        if f > margin:
-            break
         if between > 0.0:
             if abs(slope) <= noise:
                 break
@@ -153,70 +168,75 @@ def climb(
             # Near a minimum of f Newton's step leads downhill.
             turn = MAX_TURN if slope >= 0.0 else -MAX_TURN
 
-        promise = slope
         uphill = False
-        while abs(turn) > TURN_TOLERANCE or turn * promise > least_rise:
+        while abs(turn) > TURN_TOLERANCE or turn * slope > least_rise:
             mx = nx - turn * ny
             my = ny + turn * nx
-            if first_x * my >= first_y * mx and mx * last_y >= my * last_x:
-                g, slope, between, mx, my, qx, qy = fitted_circles(pair, mx, my)
-                evaluations += 1
-                if g >= f + SUFFICIENT_RISE * promise * turn - noise:
+            if in_cone(cone, mx, my):
+                circles = fitted_circles(pair, mx, my)
+                if circles[0] >= f + SUFFICIENT_RISE * slope * turn - noise:
                     uphill = True
                     break
             turn *= 0.5
         if not uphill:
             break
-        f, nx, ny, px, py = g, mx, my, qx, qy
-    return f, nx, ny, px, py, evaluations
+        f, slope, between, nx, ny, px, py, radius = circles
+
+    # The last turn, on the two circles; the square of n's error is left.
+    turn = slope / between if between > 0.0 else 0.0
+    if abs(turn) <= TURN_TOLERANCE and in_cone(cone, nx - turn * ny, ny + turn * nx):
+        half_square = 0.5 * turn * turn
+        step_x = -turn * ny - half_square * nx
+        step_y = turn * nx - half_square * ny
+        f += 0.5 * slope * turn
+        nx += step_x
+        ny += step_y
+        px += radius * step_x
+        py += radius * step_y
+    return f, nx, ny, px, py
+
+
+def in_cone(cone: Cone, nx: float, ny: float) -> bool:
+    """Whether n is in a cone that is narrower than a half circle, or in ALL_ROUND."""
+    first_x, first_y, last_x, last_y = cone
+    return first_x * ny >= first_y * nx and nx * last_y >= ny * last_x
 
 
 def sweep(
-    pair: Pair,
-    nx: float,
-    ny: float,
-    extent: float,
-    cone: Cone,
-    best: float,
-    best_x: float,
-    best_y: float,
-    margin: float,
-) -> tuple[float, float, float, int]:
-    """Prove that f exceeds best nowhere on the arc of the given extent, counterclockwise from n.
+    pair: Pair, nx: float, ny: float, extent: float, cone: Cone, best: Maximum
+) -> Maximum:
+    """The best maximum, after proving that f exceeds it nowhere on the arc of the given extent, counterclockwise from n.
 
-    Where it does, climb within the cone and go on with the better maximum, unless that is
-    above margin already. A disc as small as
-    the sharpest ends, of radius r, rolls freely inside the Minkowski sum of the two (Blaschke's
-    rolling theorem); from its position at n,
+    Where it does, climb within the cone and go on with the better maximum. If that is above
+    zero, the two are apart and it is the only one. A disc as small as the sharpest ends, of
+    radius r, rolls freely inside the Minkowski sum of the two (Blaschke's rolling theorem);
+    from its position at n,
 
         f(n turned by phi) <= (f + r) cos phi + f' sin phi - r
 
     so one jump passes every n for which the right side stays below best.
-
-    Returns the largest f, its n (x, y) and the number of evaluations.
     """
     a1, b1, a2, b2, _c, _s, _dx, _dy = pair
     r = sharpest(pair)
     slack = DEPTH_TOLERANCE * (b2 if 0.0 < b2 < b1 else b1)
     slack = max(slack, ROUNDOFF * (a1 + a2))
-    evaluations = 0
     swept = 0.0
     for _ in range(MAX_JUMPS):
-        f, slope, _between, nx, ny, _px, _py = fitted_circles(pair, nx, ny)
-        evaluations += 1
-        if f > best:
-            best, best_x, best_y, _px, _py, climbed = climb(pair, nx, ny, cone, margin)
-            evaluations += climbed
-        ceiling = best + slack + r
+        f, slope, _between, nx, ny, _px, _py, _radius = fitted_circles(pair, nx, ny)
+        if f > best[0]:
+            best = climb(pair, nx, ny, cone)
+        ceiling = best[0] + slack + r
         reach = sqrt((f + r) * (f + r) + slope * slope)
-        if best > margin or ceiling >= reach:
+        if best[0] > 0.0 or ceiling >= reach:
             break
         crossing = acos(max(-1.0, ceiling / reach))
-        jump = (atan2(slope, f + r) - crossing) % (2.0 * pi)
+        jump = atan2(slope, f + r) - crossing
+        if jump < 0.0:
+            jump += 2.0 * pi
         swept += jump
         if swept >= extent:
             break
         turned_x = nx * cos(jump) - ny * sin(jump)
         ny = ny * cos(jump) + nx * sin(jump)
         nx = turned_x
-    return best, best_x, best_y, evaluations
+    return best

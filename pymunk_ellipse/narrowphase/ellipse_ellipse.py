@@ -4,67 +4,48 @@ from __future__ import annotations
 
 from math import pi
 
-from .common_normal import (
-    ALL_ROUND,
-    climb,
-    first_guess,
-    fitted_circles,
-    sharpest,
-    sweep,
-)
+from .common_normal import ALL_ROUND, climb, first_guess, pair_of, sharpest, sweep
+from .frame import Frame
 
-# Distance, normal from the ellipse (x, y), contact point on it from its centre (x, y), evaluations.
-Contact = tuple[float, float, float, float, float, int]
+# Distance, normal from the first shape (x, y), contact point on it from the ellipse's centre (x, y).
+Contact = tuple[float, float, float, float, float]
 
 
-def ellipse_ellipse(
-    a1: float,
-    b1: float,
-    c1: float,
-    s1: float,
-    a2: float,
-    b2: float,
-    c2: float,
-    s2: float,
-    dx: float,
-    dy: float,
-    nx: float,
-    ny: float,
-    margin: float,
-) -> Contact:
+def ellipse_ellipse(first: Frame, second: Frame, nx: float, ny: float) -> Contact:
     """Distance, contact normal and contact point of two ellipses.
 
-    Semi-axes are a >= b, the one of length a along (c, s); the second centre lies at (dx, dy)
-    from the first. (nx, ny) is a normal to start from, last step's say; zero if there is none.
+    (nx, ny) is a normal to start from, last step's say, of any length; zero if there is none.
 
     Returns the distance (negative: minus the penetration depth, the least translation that
-    parts the two), the unit normal from the first to the second, the contact point on the
-    first, from its centre, and the number of evaluations. The contact point on the second lies
-    from there at the distance along the normal. Two that are apart by more than margin may
-    come back as soon as that is certain, with a distance between margin and the true one.
+    parts the two), the unit normal from the first to the second, and the contact point on the
+    first, from its centre. The contact point on the second lies from there at the distance
+    along the normal.
+
+    >>> ellipse_ellipse((2, 1, 1, 0, 0, 0), (1, 1, 1, 0, 3.5, 0), 0, 0)
+    (0.5, 1.0, 0.0, 2.0, 0.0)
     """
-    # Into the first ellipse's frame.
-    c = c1 * c2 + s1 * s2
-    s = c1 * s2 - s1 * c2
-    pair = (a1, b1, a2, b2, c, s, c1 * dx + s1 * dy, c1 * dy - s1 * dx)
-    mx = c1 * nx + s1 * ny
-    my = c1 * ny - s1 * nx
+    pair = pair_of(first, second)
+    _a, b, c, s, _x, _y = first
+    mx = c * nx + s * ny
+    my = c * ny - s * nx
     if mx == 0.0 and my == 0.0:
         mx, my = first_guess(pair)
 
-    f, mx, my, px, py, evaluations = climb(pair, mx, my, ALL_ROUND, margin)
+    contact = climb(pair, mx, my, ALL_ROUND)
     # Only deeper than the sharpest ends are round can another normal be better; most are not
     # as deep as the first one's.
-    if f * a1 < -b1 * b1 and f < -sharpest(pair):
-        _f, mx, my, swept = sweep(pair, mx, my, 2.0 * pi, ALL_ROUND, f, mx, my, margin)
-        f, _slope, _between, mx, my, px, py = fitted_circles(pair, mx, my)
-        evaluations += swept + 1
+    if contact[0] * pair[0] < -b * b and contact[0] < -sharpest(pair):
+        contact = sweep(pair, contact[1], contact[2], 2.0 * pi, ALL_ROUND, contact)
+    return turned(contact, c, s)
 
+
+def turned(contact: Contact, c: float, s: float) -> Contact:
+    """A contact in the frame of an ellipse, turned into the world."""
+    distance, nx, ny, px, py = contact
     return (
-        f,
-        c1 * mx - s1 * my,
-        s1 * mx + c1 * my,
-        c1 * px - s1 * py,
-        s1 * px + c1 * py,
-        evaluations,
+        distance,
+        c * nx - s * ny,
+        s * nx + c * ny,
+        c * px - s * py,
+        s * px + c * py,
     )

@@ -1,6 +1,8 @@
-"""An ellipse in the world: where its frame goes with its body, and its normal at a point."""
+"""An ellipse in the world: where its frame goes with its body, its normal at a point and its bounding box."""
 
 from __future__ import annotations
+
+from math import sqrt
 
 # Semi-axes (the longer first), the unit vector along the longer one (x, y) and the centre (x, y).
 Frame = tuple[float, float, float, float, float, float]
@@ -28,3 +30,20 @@ def normal_at(frame: Frame, px: float, py: float) -> tuple[float, float]:
     u = c * dx + s * dy
     v = (c * dy - s * dx) * flattening
     return c * u - s * v, s * u + c * v
+
+
+def half_extents(frame: Frame) -> tuple[float, float]:
+    """Half the width and half the height of an ellipse's bounding box.
+
+    >>> half_extents((2.0, 1.0, 0.0, 1.0, 7.0, 9.0))
+    (1.0, 2.0)
+    """
+    a, b, c, s, _x, _y = frame
+    along_x = a * c
+    across_x = b * s
+    along_y = a * s
+    across_y = b * c
+    return (
+        sqrt(along_x * along_x + across_x * across_x),
+        sqrt(along_y * along_y + across_y * across_y),
+    )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from math import atan2, hypot, pi, sqrt
 from statistics import median
 from time import thread_time
@@ -15,16 +14,15 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from pymunk_ellipse.circle_fit import FittedCircle, PlacedEllipse
+from pymunk_ellipse import published_fit as published
 from pymunk_ellipse.narrowphase import common_normal as common_normal_module
 from pymunk_ellipse.narrowphase import ellipse_ellipse as ellipse_ellipse_module
 from pymunk_ellipse.narrowphase.common_normal import first_guess, fitted_circles
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
+from pymunk_ellipse.published_fit import FittedCircle, PlacedEllipse
 
 from ._shapes import inscribed_polygon
 
-# The package offers the function of this name in the module's place.
-published = import_module("pymunk_ellipse.circle_fit")
 circle_towards = published._circle_towards
 
 Floats = NDArray[np.float64]
@@ -163,7 +161,7 @@ def common_normal(
         nx, ny = first_guess(numbers)
     depth = 0.0
     for _ in range(count):
-        f, slope, between, nx, ny, _px, _py = fitted_circles(numbers, nx, ny)
+        f, slope, between, nx, ny, _px, _py, _radius = fitted_circles(numbers, nx, ny)
         distance = sqrt(between * between + slope * slope)
         depth = between - f - distance
         nx, ny = (
@@ -177,21 +175,9 @@ def safeguarded(
     pair: Sequence[float], nx: float, ny: float, count: int
 ) -> tuple[float, float, float]:
     """The package's own contact, which takes the steps it needs."""
-    f, nx, ny, _px, _py, _evaluations = ellipse_ellipse(
-        pair[0],
-        pair[1],
-        1.0,
-        0.0,
-        pair[2],
-        pair[3],
-        pair[4],
-        pair[5],
-        pair[6],
-        pair[7],
-        nx,
-        ny,
-        0.0,
-    )
+    first = (pair[0], pair[1], 1.0, 0.0, 0.0, 0.0)
+    second = (pair[2], pair[3], pair[4], pair[5], pair[6], pair[7])
+    f, nx, ny, _px, _py = ellipse_ellipse(first, second, nx, ny)
     return -f, nx, ny
 
 

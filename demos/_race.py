@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 from tqdm import tqdm
 
 from pymunk_ellipse import backend
-from pymunk_ellipse.backend import VARIABLE
+from pymunk_ellipse.contacts.backend import VARIABLE
 
 from ._box import STEP, MakeShape, filled_box
 

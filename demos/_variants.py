@@ -8,23 +8,25 @@ from math import atan2
 from types import ModuleType
 from typing import Any
 
-import pymunk_ellipse.contacts as contacts
+import pymunk_ellipse.contacts.backend as backends
+import pymunk_ellipse.contacts.resolver as resolver
 import pymunk_ellipse.narrowphase.ellipse_ellipse as ellipse_ellipse
 import pymunk_ellipse.narrowphase.ellipse_polygon as ellipse_polygon
-import pymunk_ellipse.resolver as resolver
-from pymunk_ellipse.circle_fit import circle_fit
+from pymunk_ellipse.chipmunk.structs import arbiter_at
+from pymunk_ellipse.narrowphase.common_normal import Maximum
 from pymunk_ellipse.narrowphase.ellipse_ellipse import Contact
-from pymunk_ellipse.narrowphase.placement import Frame
+from pymunk_ellipse.narrowphase.frame import Frame
+from pymunk_ellipse.published_fit import circle_fit
 
 SHIPPED = "shipped"
 
 
 @contextmanager
 def replaced(*replacements: tuple[ModuleType, str, Any]) -> Iterator[None]:
-    """Resolve contacts of spaces made from here on in Python, with other things under some names of some modules."""
+    """Resolve contacts in Python, with other things under some names of some modules."""
     with ExitStack() as undo:
-        in_python = (contacts, "compiled_pre_solve", lambda: None)
-        for module, name, replacement in (in_python, *replacements):
+        undo.enter_context(backends.using(backends.Python()))
+        for module, name, replacement in replacements:
             undo.callback(setattr, module, name, getattr(module, name))
             setattr(module, name, replacement)
         yield
@@ -33,15 +35,16 @@ def replaced(*replacements: tuple[ModuleType, str, Any]) -> Iterator[None]:
 @contextmanager
 def without_warm_start() -> Iterator[None]:
     """No contact takes over the impulses of the last step."""
-    whole = contacts.pre_solve
+    whole = backends.pre_solve
 
-    def pre_solve(ellipses: dict[Any, Frame], arbiter: Any) -> None:
-        whole(ellipses, arbiter)
+    def pre_solve(address: int) -> None:
+        whole(address)
+        arbiter = arbiter_at(address)
         if arbiter.data:
-            arbiter.contacts[0].jnAcc = 0.0
-            arbiter.contacts[0].jtAcc = 0.0
+            arbiter.contact.jnAcc = 0.0
+            arbiter.contact.jtAcc = 0.0
 
-    with replaced((contacts, "pre_solve", pre_solve)):
+    with replaced((backends, "pre_solve", pre_solve)):
         yield
 
 
@@ -60,9 +63,9 @@ def without_rolling() -> Iterator[None]:
 def without_sweep() -> Iterator[None]:
     """The first maximum that the climb finds counts, however deep the overlap."""
 
-    def sweep(*arguments: Any) -> tuple[float, float, float, int]:
-        best, best_x, best_y = arguments[-4:-1]
-        return best, best_x, best_y, 0
+    def sweep(*arguments: Any) -> Maximum:
+        best: Maximum = arguments[-1]
+        return best
 
     with replaced((ellipse_ellipse, "sweep", sweep), (ellipse_polygon, "sweep", sweep)):
         yield
@@ -72,18 +75,15 @@ def without_sweep() -> Iterator[None]:
 def with_published_fit() -> Iterator[None]:
     """Contacts of two ellipses come from the published alternating fit, ten sweeps of it."""
 
-    def contact_with_ellipse(
-        first: Frame, second: Frame, nx: float, ny: float, margin: float
-    ) -> Contact:
-        del nx, ny, margin
+    def contact(first: Frame, second: Frame, nx: float, ny: float) -> Contact:
         fit = circle_fit(by_angle(first), by_angle(second))
         nx, ny = fit.normal
         circle = fit.first
         px = circle.x + circle.radius * nx - first[4]
         py = circle.y + circle.radius * ny - first[5]
-        return -fit.depth, nx, ny, px, py, fit.sweeps
+        return -fit.depth, nx, ny, px, py
 
-    with replaced((resolver, "contact_with_ellipse", contact_with_ellipse)):
+    with replaced((resolver, "ellipse_ellipse", contact)):
         yield
 
 

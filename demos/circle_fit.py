@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, inf, sin
+from math import atan2, cos, degrees, hypot, sin
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Ellipse as EllipsePatch
 
-from pymunk_ellipse.circle_fit import FittedCircle, PlacedEllipse, circle_fit
 from pymunk_ellipse.narrowphase.common_normal import first_guess, fitted_circles
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
+from pymunk_ellipse.published_fit import FittedCircle, PlacedEllipse, circle_fit
 
 from ._picture import OUTLINE, save
 
@@ -68,9 +68,7 @@ def at_a_common_normal(one: PlacedEllipse, two: PlacedEllipse) -> list[Sweep]:
     nx, ny = first_guess(pair)
     result = []
     for _ in range(SWEEPS):
-        f, slope, between, nx, ny, px, py = fitted_circles(pair, nx, ny)
-        h = hypot(one.a * nx, one.b * ny)
-        radius1 = (one.a * one.b) ** 2 / h**3
+        f, slope, between, nx, ny, px, py, radius1 = fitted_circles(pair, nx, ny)
         radius2 = between - f - radius1
         x, y = px - radius1 * nx, py - radius1 * ny
         # From the first circle's centre to the second's: along the normal and across it.
@@ -93,11 +91,10 @@ METHODS = {"alternating fit": alternating, "common normal": at_a_common_normal}
 
 
 def exact_depth(one: PlacedEllipse, two: PlacedEllipse) -> float:
-    frames = (
-        *(one.a, one.b, cos(one.angle), sin(one.angle)),
-        *(two.a, two.b, cos(two.angle), sin(two.angle)),
+    first, second = (
+        (e.a, e.b, cos(e.angle), sin(e.angle), e.x, e.y) for e in (one, two)
     )
-    return -ellipse_ellipse(*frames, two.x - one.x, two.y - one.y, 0.0, 0.0, inf)[0]
+    return -ellipse_ellipse(first, second, 0.0, 0.0)[0]
 
 
 def run(out: Path, quick: bool) -> None:

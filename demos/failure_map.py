@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from tqdm import tqdm
 
-from pymunk_ellipse.circle_fit import circle_fit
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
+from pymunk_ellipse.published_fit import circle_fit
 
 from ._methods import Floats, common_normal, exact_contacts
 from ._picture import save
@@ -83,7 +83,8 @@ def package_wrong(
 ) -> bool:
     a1, b1, a2, b2, c, s, dx, dy = pair
     nx, ny = (cos(start), sin(start)) if given else (0.0, 0.0)
-    f = ellipse_ellipse(a1, b1, 1.0, 0.0, a2, b2, c, s, dx, dy, nx, ny, 0.0)[0]
+    first, second = (a1, b1, 1.0, 0.0, 0.0, 0.0), (a2, b2, c, s, dx, dy)
+    f = ellipse_ellipse(first, second, nx, ny)[0]
     return wrong(-f, exact, b2, by)
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from math import atan2, cos, pi, sin, sqrt
 from pathlib import Path
 from statistics import geometric_mean, median
+from typing import Any
 
 import pymunk
 from matplotlib.axes import Axes
@@ -17,7 +17,8 @@ from matplotlib.patches import Ellipse as EllipsePatch
 from matplotlib.patches import Polygon
 
 from pymunk_ellipse import Ellipse, backend
-from pymunk_ellipse.hull import ROUNDING, VERTICES, Hull, hull_with_moment, rounded_hull
+from pymunk_ellipse.chipmunk.private import c_points
+from pymunk_ellipse.hull import ROUNDING, VERTICES, unit_polygon
 
 from ._picture import OUTLINE, save
 from ._race import Course, Runner, race
@@ -26,8 +27,6 @@ from ._race import Course, Runner, race
 COUNTS = 7, 8, 10, 12, 16
 ROUNDINGS = 0.0, 0.05, 0.1, 0.2, 0.3, 0.5
 QUICK_COUNTS = (VERTICES,)
-# Ellipses whose structs are not as known have this hull, so its price is told too.
-MOMENT = f"{VERTICES} vertices, moment"
 ASPECT_RATIOS = 1.0, 1.5, 2.0, 4.0, 7.0, 10.0
 QUICK_ASPECT_RATIOS = (2.0,)
 # The same area for all: a b.
@@ -41,20 +40,25 @@ QUICK_ROUNDS = 5
 SEEDS = 1, 2, 3
 QUICK_SEEDS = (1,)
 
-MakeHull = Callable[[float, float, float, float, float], Hull]
+# What makes the hull of an ellipse: a polygon around the unit circle, and a rounding.
+HullKind = tuple[int, float]
 
 
 class EllipseWithHull(Ellipse):
     """An ellipse with another hull than its own."""
 
     def __init__(
-        self, body: pymunk.Body, a: float, b: float, make_hull: MakeHull
+        self, body: pymunk.Body | None, a: float, b: float, hull_kind: HullKind
     ) -> None:
-        self._make_hull = make_hull
+        count, rounding = hull_kind
+        self._unit_polygon = polygon_of(count)
+        self._rounding = rounding
         super().__init__(body, a, b)
 
-    def _hull(self) -> Hull:
-        return self._make_hull(self.a, self.b, self.angle, *self.offset)
+
+@cache
+def polygon_of(count: int) -> Any:
+    return c_points(unit_polygon(count))
 
 
 def kind(count: int, rounding: float) -> str:
@@ -64,15 +68,15 @@ def kind(count: int, rounding: float) -> str:
 CHOSEN = kind(VERTICES, ROUNDING)
 
 
-def hulls(counts: tuple[int, ...]) -> dict[str, MakeHull]:
+def hulls(counts: tuple[int, ...]) -> dict[str, HullKind]:
     """What makes each kind of hull."""
-    made: dict[str, MakeHull] = {
-        kind(count, rounding): partial(rounded_hull, count=count, rounding=rounding)
+    made = {
+        kind(count, rounding): (count, rounding)
         for count in counts
         for rounding in ROUNDINGS
     }
     # The one in use is what all are compared with, whichever that is.
-    return {**made, CHOSEN: rounded_hull, MOMENT: hull_with_moment}
+    return {**made, CHOSEN: (VERTICES, ROUNDING)}
 
 
 def semi_axes(aspect_ratio: float) -> tuple[float, float]:
@@ -84,7 +88,7 @@ class Timing:
 
     def __init__(
         self,
-        made: dict[str, MakeHull],
+        made: dict[str, HullKind],
         aspect_ratio: float,
         course: Course,
         rounds: int,
@@ -93,12 +97,12 @@ class Timing:
         a, b = semi_axes(aspect_ratio)
         runners = {
             (name, seed): Runner(
-                partial(EllipseWithHull, a=a, b=b, make_hull=make_hull),
+                partial(EllipseWithHull, a=a, b=b, hull_kind=hull_kind),
                 max(a, b),
                 replace(course, seed=seed),
                 backend(),
             )
-            for name, make_hull in made.items()
+            for name, hull_kind in made.items()
             for seed in seeds
         }
         times = race(runners, rounds)
@@ -152,7 +156,6 @@ def print_table(ratios: dict[str, float], counts: tuple[int, ...]) -> None:
     for count in counts:
         row = [ratios[kind(count, rounding)] for rounding in ROUNDINGS]
         print(f"{count:8}" + "".join(f"{ratio:8.3f}" for ratio in row))
-    print(f"{MOMENT}: {ratios[MOMENT]:.3f}")
 
 
 def write(timed: dict[float, Timing], path: Path) -> None:
@@ -196,12 +199,6 @@ def draw(
                 color=f"C{index}",
                 label=f"{count} vertices",
             )
-        axes.axhline(
-            ratios[MOMENT],
-            color="black",
-            linestyle="--",
-            label=f"{VERTICES} vertices for the moment",
-        )
         axes.axhline(1.0, color="gray", linestyle=":", linewidth=1.0)
         axes.plot(
             [ROUNDING],
@@ -226,14 +223,13 @@ def draw(
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
 
     a, b = semi_axes(2.0)
-    shown: dict[str, MakeHull] = {
-        f"{VERTICES} vertices, 0": partial(rounded_hull, rounding=0.0),
-        f"{VERTICES} vertices, {ROUNDING:g}": rounded_hull,
-        f"{VERTICES} vertices, moment": hull_with_moment,
+    shown: dict[str, HullKind] = {
+        f"{VERTICES} vertices, 0": (VERTICES, 0.0),
+        f"{VERTICES} vertices, {ROUNDING:g}": (VERTICES, ROUNDING),
     }
-    for row, (label, make_hull) in enumerate(shown.items()):
+    for row, (label, hull_kind) in enumerate(shown.items()):
         y = -2.8 * b * row
-        draw_hull(shape_axes, make_hull(a, b, 0.0, 0.0, y))
+        draw_hull(shape_axes, a, b, y, hull_kind)
         shape_axes.add_patch(
             EllipsePatch((0.0, y), 2.0 * a, 2.0 * b, fill=False, edgecolor=OUTLINE)
         )
@@ -245,9 +241,13 @@ def draw(
     return figure
 
 
-def draw_hull(axes: Axes, hull: Hull, steps: int = 16) -> None:
-    """Draw a hull: its vertices, counterclockwise, widened by its radius."""
-    vertices, radius = hull
+def draw_hull(
+    axes: Axes, a: float, b: float, y: float, hull_kind: HullKind, steps: int = 16
+) -> None:
+    """Draw the hull of an ellipse: its vertices, counterclockwise, widened by its radius."""
+    hull = EllipseWithHull(None, a, b, hull_kind)
+    vertices = [(vertex.x, vertex.y + y) for vertex in hull.get_vertices()]
+    radius = hull.radius
     outline = []
     for i, (x, y) in enumerate(vertices):
         first = outward(vertices[i - 1], (x, y))

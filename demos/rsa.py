@@ -89,8 +89,9 @@ class Surface:
             return True
         if square >= 4.0 * a * a:
             return False
-        frames = a, 1.0, c, s, a, 1.0, other_c, other_s
-        return ellipse_ellipse(*frames, dx, dy, 0.0, 0.0, 0.0)[0] < 0.0
+        first = a, 1.0, c, s, 0.0, 0.0
+        second = a, 1.0, other_c, other_s, dx, dy
+        return ellipse_ellipse(first, second, 0.0, 0.0)[0] < 0.0
 
     def block(self, x: float, y: float) -> None:
         """Leave out squares whose every point is within 2 b of a new centre."""

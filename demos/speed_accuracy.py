@@ -9,6 +9,7 @@ from functools import partial
 from math import inf
 from pathlib import Path
 from statistics import mean
+from typing import Any
 
 import pymunk
 from matplotlib import colormaps
@@ -259,6 +260,18 @@ def draw_panel(axes: Axes, scores: Scores, accuracy: Accuracy) -> None:
 TOLERANCES = 1e-1, 1e-2, 1e-3, 1e-4, TURN_TOLERANCE, 1e-8
 
 
+class Counted:
+    """A function that counts its calls."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        self.calls = 0
+
+    def __call__(self, *arguments: Any) -> Any:
+        self.calls += 1
+        return self.function(*arguments)
+
+
 def tolerances(out: Path, quick: bool) -> None:
     """What the package's tolerance costs and gives: evaluations and errors, from the normal of a step before."""
     path = out / "speed_accuracy_tolerances.csv"
@@ -272,20 +285,22 @@ def tolerances(out: Path, quick: bool) -> None:
             pairs = random_pairs(ratio, *DEPTHS, 30 if quick else 400, SEED)
             numbers = pairs.numbers.tolist()
             for tolerance in TOLERANCES:
-                evaluations = 0
+                counted = Counted(common_normal.fitted_circles)
                 normal = depth = 0.0
-                with replaced((common_normal, "TURN_TOLERANCE", tolerance)):
+                with replaced(
+                    (common_normal, "TURN_TOLERANCE", tolerance),
+                    (common_normal, "fitted_circles", counted),
+                ):
                     for pair, start, exact in zip(
                         numbers, pairs.warm.tolist(), pairs.exact.tolist(), strict=True
                     ):
                         a1, b1, *second = pair
-                        frame = a1, b1, 1.0, 0.0
-                        found = ellipse_ellipse(*frame, *second, *start, 0.0)
-                        evaluations += found[5]
+                        first = a1, b1, 1.0, 0.0, 0.0, 0.0
+                        found = ellipse_ellipse(first, tuple(second), *start)
                         sine = found[1] * exact[2] - found[2] * exact[1]
                         normal = max(normal, abs(sine))
                         depth = max(depth, abs(-found[0] - exact[0]))
-                mean_evaluations = evaluations / len(pairs)
+                mean_evaluations = counted.calls / len(pairs)
                 rows.writerow(
                     (
                         ratio,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isinf
 from typing import Any
 
-from pymunk import Vec2d
+from pymunk import BB, Vec2d
 
 # Chipmunk multiplies up to four lengths for a moment; beyond these bounds that over- or underflows.
 SMALLEST_SEMI_AXIS = 1e-50
@@ -42,6 +42,29 @@ def point(name: str, value: Any) -> Vec2d:
     except ValueError as error:
         raise ValueError(f"{name} must be two numbers, got {value!r}") from error
     return Vec2d(number(f"{name}[0]", x), number(f"{name}[1]", y))
+
+
+def number_or_infinity(name: str, value: Any) -> float:
+    """value as a float that is not NaN."""
+    if isinstance(value, float) and isinf(value):
+        return value
+    return number(name, value)
+
+
+def box(name: str, value: Any) -> BB:
+    """value as a bounding box, which may be infinite."""
+    try:
+        left, bottom, right, top = value
+    except TypeError as error:
+        raise TypeError(f"{name} must be four numbers, got {value!r}") from error
+    except ValueError as error:
+        raise ValueError(f"{name} must be four numbers, got {value!r}") from error
+    return BB(
+        number_or_infinity(f"{name}.left", left),
+        number_or_infinity(f"{name}.bottom", bottom),
+        number_or_infinity(f"{name}.right", right),
+        number_or_infinity(f"{name}.top", top),
+    )
 
 
 def semi_axes(a: Any, b: Any) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from math import cos, isclose, pi, sin
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import pymunk
 from pymunk import (
@@ -16,15 +16,28 @@ from pymunk import (
     Vec2d,
 )
 
-from . import _checks, contacts
-from ._layout import unproved, write_ellipse
-from ._pymunk import NO_SPACE
-from .geometry import IDENTITY, Transform, body_transform
-from .hull import Hull, hull_with_moment, rounded_hull
-from .narrowphase.placement import Frame, placed
-from .narrowphase.query import half_extents, nearest_point, segment_hit, settled
-from .queries import touched_corner, transform_now
-from .resolver import contact_with_ellipse, contact_with_shape
+from . import _checks, hull
+from .chipmunk.private import NO_SPACE, c_points, new_polygon, set_polygon
+from .chipmunk.shape_class import frame_now
+from .chipmunk.structs import INLINE_VERTICES, ellipse_class, hull_at, shape_at
+from .contacts import handler
+from .contacts.backend import kernel
+from .contacts.pair import ShapeContact
+from .narrowphase.frame import Frame, half_extents
+
+
+class ShapeDistance(NamedTuple):
+    """How far two shapes are apart, and where; see :py:meth:`Ellipse.distance`."""
+
+    #: The distance of the surfaces, negative where the shapes overlap: minus the least
+    #: translation that parts them.
+    distance: float
+    #: The unit normal from the first shape to the second.
+    normal: Vec2d
+    #: The point of the first shape that is nearest to the second or, where they overlap, deepest in it.
+    point_a: Vec2d
+    #: The same of the second shape, at the distance along the normal from point_a.
+    point_b: Vec2d
 
 
 class Ellipse(pymunk.Poly):
@@ -51,8 +64,9 @@ class Ellipse(pymunk.Poly):
     (6.283, 785.4)
     """
 
-    # Where an ellipse without a body is.
-    _updated: Transform = IDENTITY
+    # What makes the hull: a polygon around the unit circle, and how much of b its corners' radius is.
+    _unit_polygon: Any = c_points(hull.unit_polygon(hull.VERTICES))
+    _rounding: float = hull.ROUNDING
 
     _pickle_attrs_init: ClassVar[list[str]] = [
         *pymunk.Shape._pickle_attrs_init,
@@ -82,20 +96,30 @@ class Ellipse(pymunk.Poly):
         1e50 or with a ratio beyond 1e6.
         """
         self._set_frame(a, b, offset, angle)
-        vertices, radius = self._hull()
-        # Chipmunk takes mass properties from vertices and radius now, and does not when the
-        # radius changes: those of the vertices alone stay.
-        super().__init__(body, vertices)
-        super().unsafe_set_radius(radius)
-        self._write()
+        kernel()
+        new_polygon(
+            self, body, self._unit_polygon, *hull.stretch(self._frame, self._rounding)
+        )
+        self._become_ellipse()
 
-    def _hull(self) -> Hull:
-        make = rounded_hull if unproved() is None else hull_with_moment
-        return make(self._a, self._b, self._angle, *self._offset)
-
-    def _write(self) -> None:
-        if unproved() is None:
-            write_ellipse(self._shape, self._frame)
+    def _become_ellipse(self) -> None:
+        """Make the hull an ellipse: its class, its frames and its mass properties, which Chipmunk took from the vertices."""
+        cp_hull = hull_at(self._shape)
+        if cp_hull.count <= INLINE_VERTICES:
+            # Roundoff has made vertices one: the frames have no room.
+            raise ValueError(
+                f"offset must not be so far that roundoff hides the ellipse, got {self._offset!r}"
+            )
+        a, b, _c, _s, x, y = frame = self._frame
+        cp_hull.local = frame
+        cp_hull.world = frame
+        shape = cp_hull.shape
+        shape.i = (a * a + b * b) / 4.0
+        shape.cog.x = x
+        shape.cog.y = y
+        shape.area = pi * a * b
+        self._polygon_class = shape.klass
+        shape.klass = ellipse_class()
 
     def _set_frame(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._a, self._b = _checks.semi_axes(a, b)
@@ -166,15 +190,30 @@ class Ellipse(pymunk.Poly):
 
     def _reshape(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._set_frame(a, b, offset, angle)
-        vertices, radius = self._hull()
-        super().unsafe_set_vertices(vertices)
-        super().unsafe_set_radius(radius)
-        self._write()
+        # Chipmunk sets the vertices of what has the class of polygons, and nothing else's.
+        shape_at(self._shape).klass = self._polygon_class
+        set_polygon(
+            self, self._unit_polygon, *hull.stretch(self._frame, self._rounding)
+        )
+        self._become_ellipse()
         if self.mass > 0.0:
             # Once more, for the body to take over the new moment.
             self.mass = self.mass
-        if self.space is not None:
-            contacts.enter(self.space, self._shape, self._frame)
+
+    @property
+    def radius(self) -> float:
+        """The radius of the hull that pymunk's broad phase sees."""
+        radius: float = hull_at(self._shape).r
+        return radius
+
+    def get_vertices(self) -> list[Vec2d]:
+        """The vertices of the hull that pymunk's broad phase sees, in body local coordinates."""
+        cp_hull = hull_at(self._shape)
+        planes = cp_hull.planes
+        count = cp_hull.count
+        return [
+            Vec2d(planes[4 * i], planes[4 * i + 1]) for i in range(count, 2 * count)
+        ]
 
     def unsafe_set_vertices(self, *args: Any, **kwargs: Any) -> NoReturn:
         """The hull follows from the semi-axes: raises TypeError."""
@@ -200,19 +239,7 @@ class Ellipse(pymunk.Poly):
             raise ValueError(
                 f"transform must be a rotation and a translation, got {transform}"
             )
-        self._updated = (
-            transform.tx,
-            transform.ty,
-            transform.a,
-            transform.b,
-        )
-        super().update(transform)
-        return self.bb
-
-    def cache_bb(self) -> BB:
-        """Take over the body's position in pymunk, and return the bounding box."""
-        super().cache_bb()
-        return self.bb
+        return super().update(transform)
 
     @property
     def bb(self) -> BB:
@@ -241,10 +268,9 @@ class Ellipse(pymunk.Poly):
         >>> hit.point, hit.distance, hit.gradient
         (Vec2d(0.0, 1.0), 3.0, Vec2d(0.0, 1.0))
         """
-        return self._nearest(_checks.point("p", p))
-
-    def _nearest(self, p: Vec2d) -> PointQueryInfo:
-        distance, nx, ny, px, py = nearest_point(self._placed(), p.x, p.y)
+        point = _checks.point("p", p)
+        _forget_dead_body(self)
+        distance, nx, ny, px, py = kernel().nearest_now(self._shape, point.x, point.y)
         return PointQueryInfo(self, Vec2d(px, py), distance, Vec2d(nx, ny))
 
     def segment_query(
@@ -268,22 +294,20 @@ class Ellipse(pymunk.Poly):
         >>> hit.point, hit.normal, hit.alpha
         (Vec2d(0.0, 1.0), Vec2d(0.0, 1.0), 0.5)
         """
-        return self._hit(
-            _checks.point("start", start),
-            _checks.point("end", end),
-            _checks.number("radius", radius),
+        start = _checks.point("start", start)
+        end = _checks.point("end", end)
+        radius = _checks.number("radius", radius)
+        _forget_dead_body(self)
+        alpha, nx, ny, px, py = kernel().cast_now(
+            self._shape, start.x, start.y, end.x, end.y, radius
         )
-
-    def _hit(self, start: Vec2d, end: Vec2d, radius: float) -> SegmentQueryInfo | None:
-        hit = segment_hit(self._placed(), start.x, start.y, end.x, end.y, radius)
-        if hit is None:
+        if alpha > 1.0:
             return None
-        alpha, nx, ny, px, py = hit
         return SegmentQueryInfo(self, Vec2d(px, py), Vec2d(nx, ny), alpha)
 
     def _placed(self) -> Frame:
-        transform = body_transform(self)
-        return placed(self._frame, *(transform or self._updated))
+        _forget_dead_body(self)
+        return frame_now(hull_at(self._shape))
 
     def shapes_collide(self, b: pymunk.Shape) -> ContactPointSet:
         """Get contact information about this ellipse and shape b.
@@ -300,26 +324,36 @@ class Ellipse(pymunk.Poly):
         >>> contact.normal, contact.points[0].distance
         (Vec2d(1.0, 0.0), -0.5)
         """
-        ellipse = self._placed()
-        if isinstance(b, Ellipse):
-            contact = contact_with_ellipse(ellipse, b._placed(), 0.0, 0.0, 0.0)
-        elif isinstance(b, pymunk.Shape):
-            contact = contact_with_shape(ellipse, b, transform_now(b), 0.0, 0.0, 0.0)
-        else:
-            raise TypeError(f"b must be a pymunk.Shape, got {b!r}")
-        if contact[0] > 0.0:
+        distance, nx, ny, ax, ay, bx, by = self._contact("b", b)
+        if distance > 0.0:
             return ContactPointSet(Vec2d.zero(), ())
-        if isinstance(b, Ellipse):
-            touched: Frame | None = b._placed()
-        else:
-            touched = touched_corner(ellipse, b, contact)
-        if touched is not None:
-            contact = settled(ellipse, touched, contact)
-        distance, nx, ny, px, py, _evaluations = contact
-        normal = Vec2d(nx, ny)
-        on_ellipse = Vec2d(ellipse[4] + px, ellipse[5] + py)
-        point = ContactPoint(on_ellipse, on_ellipse + distance * normal, distance)
-        return ContactPointSet(normal, (point,))
+        point = ContactPoint(Vec2d(ax, ay), Vec2d(bx, by), distance)
+        return ContactPointSet(Vec2d(nx, ny), (point,))
+
+    def distance(self, other: pymunk.Shape) -> ShapeDistance:
+        """The distance to another shape, the normal towards it and the nearest points, exact apart and overlapping.
+
+        other is any of pymunk's shapes. The distance is negative where the two overlap; then it
+        is minus the least translation that parts them. All is in world coordinates.
+
+        Both are taken where their bodies are now; without a body, where update put them.
+
+        Raises TypeError if other is not a pymunk.Shape.
+
+        >>> left = Ellipse(pymunk.Body(), 2, 1)
+        >>> right = pymunk.Circle(pymunk.Body(), 1, offset=(5, 0))
+        >>> left.distance(right)
+        ShapeDistance(distance=2.0, normal=Vec2d(1.0, 0.0), point_a=Vec2d(2.0, 0.0), point_b=Vec2d(4.0, 0.0))
+        """
+        distance, nx, ny, ax, ay, bx, by = self._contact("other", other)
+        return ShapeDistance(distance, Vec2d(nx, ny), Vec2d(ax, ay), Vec2d(bx, by))
+
+    def _contact(self, name: str, other: Any) -> ShapeContact:
+        if not isinstance(other, pymunk.Shape):
+            raise TypeError(f"{name} must be a pymunk.Shape, got {other!r}")
+        _forget_dead_body(self)
+        _forget_dead_body(other)
+        return kernel().shape_contact(self._shape, other._shape)
 
     # pymunk tells a shape that it enters or leaves a space by setting this.
     @property
@@ -331,14 +365,20 @@ class Ellipse(pymunk.Poly):
     def _space(self, reference: weakref.ref[pymunk.Space]) -> None:
         old = self._space()
         if old is not None:
-            contacts.leave(old, self._shape)
+            handler.leave(old)
         self.__dict__["_in_space"] = reference
         new = reference()
         if new is not None:
-            contacts.enter(new, self._shape, self._frame)
+            handler.enter(new)
 
     def __getstate__(self) -> dict[str, list[tuple[str, Any]]]:
         """The state to copy and pickle: the constructor's arguments and the attributes of every shape."""
         state = super(pymunk.Poly, self).__getstate__()
         state["general"] = [(k, v) for k, v in state["general"] if k != "density"]
         return state
+
+
+def _forget_dead_body(shape: pymunk.Shape) -> None:
+    """Have a C shape not point to a body that is gone: a shape does not keep its body alive."""
+    if shape.body is None:
+        shape_at(shape._shape).on_body = 0

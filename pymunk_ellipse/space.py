@@ -6,6 +6,8 @@ from typing import cast
 
 from pymunk import (
     BB,
+    ContactPoint,
+    ContactPointSet,
     PointQueryInfo,
     SegmentQueryInfo,
     Shape,
@@ -14,22 +16,23 @@ from pymunk import (
     SpaceDebugDrawOptions,
 )
 
-from . import _checks, queries
+from . import _checks, wide_rays
+from .contacts.events import EventSpace
+from .contacts.handler import has_ellipses
 from .drawing import TrueOutlines
 from .ellipse import Ellipse
-from .events import EventSpace
 
 
 class Space(EventSpace):
     """A :py:class:`pymunk.Space` in which everything to be observed is the ellipse.
 
-    On a plain pymunk.Space contacts with ellipses are exact as well, but callbacks, queries
-    and drawing see their hulls. Here callbacks are called when ellipses touch, queries give
-    distances, points and normals of the ellipses, and :py:meth:`debug_draw` draws their
-    outlines. It is used like pymunk's own, and all that is without ellipses is pymunk's own.
+    On a plain pymunk.Space contacts and queries with ellipses are exact as well, but callbacks,
+    :py:meth:`shape_query` and drawing see their hulls. Here callbacks are called when ellipses
+    touch, :py:meth:`debug_draw` draws their outlines, and :py:meth:`segment_query` with a radius
+    overlooks none. It is used like pymunk's own, and all that is without ellipses is pymunk's own.
 
-    As in pymunk, after a body has been moved by setting its position or angle,
-    :py:meth:`reindex_shapes_for_body` lets the next query find its shapes in their new places.
+    As in pymunk, queries of the space see shapes where the last step, or the last
+    :py:meth:`reindex_shapes_for_body`, left them.
 
     While there are ellipses in the space, the queries raise TypeError for arguments that are
     not numbers, and ValueError for those that are not finite (a bounding box and a maximal
@@ -58,39 +61,19 @@ class Space(EventSpace):
         >>> hit.point, hit.distance, hit.gradient
         (Vec2d(0.0, 10.0), 3.0, Vec2d(0.0, 1.0))
         """
-        if not queries.has_ellipses(self):
-            return super().point_query(point, max_distance, shape_filter)
-        point = _checks.point("point", point)
-        max_distance = queries.number_or_infinity("max_distance", max_distance)
-        # A hull contains its ellipse: its distance is smaller everywhere, inside and out, so
-        # none is missed.
-        found = []
-        for hit in super().point_query(point, max_distance, shape_filter):
-            if isinstance(hit.shape, Ellipse):
-                hit = hit.shape._nearest(point)
-                if not hit.distance < max_distance:
-                    continue
-            found.append(hit)
-        return found
+        if has_ellipses(self):
+            point = _checks.point("point", point)
+            max_distance = _checks.number_or_infinity("max_distance", max_distance)
+        return super().point_query(point, max_distance, shape_filter)
 
     def point_query_nearest(
         self, point: tuple[float, float], max_distance: float, shape_filter: ShapeFilter
     ) -> PointQueryInfo | None:
         """The shape nearest to the point, if nearer than max_distance; see :py:meth:`point_query`."""
-        if not queries.has_ellipses(self):
-            return super().point_query_nearest(point, max_distance, shape_filter)
-        point = _checks.point("point", point)
-        max_distance = queries.number_or_infinity("max_distance", max_distance)
-        nearest = super().point_query_nearest(point, max_distance, shape_filter)
-        # If the nearest of shapes and hulls is a shape, ellipses are farther away still.
-        if nearest is None or not isinstance(nearest.shape, Ellipse):
-            return nearest
-        nearest = nearest.shape._nearest(point)
-        limit = min(nearest.distance, max_distance)
-        hits = self.point_query(point, limit, shape_filter)
-        if nearest.distance < max_distance:
-            hits.append(nearest)
-        return min(hits, key=lambda hit: hit.distance, default=None)
+        if has_ellipses(self):
+            point = _checks.point("point", point)
+            max_distance = _checks.number_or_infinity("max_distance", max_distance)
+        return super().point_query_nearest(point, max_distance, shape_filter)
 
     def segment_query(
         self,
@@ -115,26 +98,22 @@ class Space(EventSpace):
         >>> hit.point, hit.normal, hit.alpha
         (Vec2d(0.0, 10.0), Vec2d(0.0, 1.0), 0.4)
         """
-        if not queries.has_ellipses(self):
+        if not has_ellipses(self):
             return super().segment_query(start, end, radius, shape_filter)
         start = _checks.point("start", start)
         end = _checks.point("end", end)
         radius = _checks.number("radius", radius)
         found = super().segment_query(start, end, radius, shape_filter)
-        hits = {}
-        for _, shape in queries.shapes_along(self, start, end, radius, shape_filter):
-            if isinstance(shape, Ellipse):
-                hit = shape._hit(start, end, radius)
-                if hit is not None:
-                    hits[shape] = hit
-        # Each in its hull's place, and those whose hull was overlooked at the end.
-        exact = []
-        for hit in found:
-            if not isinstance(hit.shape, Ellipse):
-                exact.append(hit)
-            elif hit.shape in hits:
-                exact.append(hits.pop(hit.shape))
-        return [*exact, *hits.values()]
+        if radius > 0.0:
+            seen = {hit.shape for hit in found}
+            for ellipse in wide_rays.ellipses_along(
+                self, start, end, radius, shape_filter
+            ):
+                if ellipse not in seen:
+                    hit = ellipse.segment_query(start, end, radius)
+                    if hit is not None:
+                        found.append(hit)
+        return found
 
     def segment_query_first(
         self,
@@ -147,36 +126,17 @@ class Space(EventSpace):
 
         One that it touches only at the end does not count, as in pymunk.
         """
-        if not queries.has_ellipses(self):
+        if not has_ellipses(self):
             return super().segment_query_first(start, end, radius, shape_filter)
+        if _checks.number("radius", radius) > 0.0:
+            # Chipmunk's own search for the first leaves out what the circle touches before its
+            # middle has come to the shape's box.
+            hits = self.segment_query(start, end, radius, shape_filter)
+            before = (hit for hit in hits if hit.alpha < 1.0)
+            return min(before, key=lambda hit: hit.alpha, default=None)
         start = _checks.point("start", start)
         end = _checks.point("end", end)
-        radius = _checks.number("radius", radius)
-        first = super().segment_query_first(start, end, radius, shape_filter)
-        if radius > 0.0 or (first is not None and isinstance(first.shape, Ellipse)):
-            # The first of the other shapes may be behind the hull, and pymunk may overlook it
-            # for its radius.
-            first = min(
-                (
-                    hit
-                    for hit in super().segment_query(start, end, radius, shape_filter)
-                    if not isinstance(hit.shape, Ellipse) and hit.alpha < 1.0
-                ),
-                key=lambda hit: hit.alpha,
-                default=None,
-            )
-        alpha = 1.0 if first is None else first.alpha
-        for reached, shape in queries.shapes_along(
-            self, start, end, radius, shape_filter
-        ):
-            if reached >= alpha:
-                break
-            if isinstance(shape, Ellipse):
-                hit = shape._hit(start, end, radius)
-                if hit is not None and hit.alpha < alpha:
-                    first = hit
-                    alpha = hit.alpha
-        return first
+        return super().segment_query_first(start, end, radius, shape_filter)
 
     def bb_query(self, bb: BB, shape_filter: ShapeFilter) -> list[Shape]:
         """All shapes whose bounding boxes overlap bb. Sensors are included.
@@ -188,14 +148,9 @@ class Space(EventSpace):
         >>> space.bb_query(pymunk.BB(20.5, 0, 30, 10), pymunk.ShapeFilter())
         []
         """
-        if not queries.has_ellipses(self):
-            return super().bb_query(bb, shape_filter)
-        bb = queries.box(bb)
-        return [
-            shape
-            for shape in super().bb_query(bb, shape_filter)
-            if not isinstance(shape, Ellipse) or shape.bb.intersects(bb)
-        ]
+        if has_ellipses(self):
+            bb = _checks.box("bb", bb)
+        return super().bb_query(bb, shape_filter)
 
     def shape_query(self, shape: Shape) -> list[ShapeQueryInfo]:
         """All shapes in the space that overlap the given shape, with their contacts. Sensors are included.
@@ -220,7 +175,7 @@ class Space(EventSpace):
             if isinstance(shape, Ellipse):
                 contact = shape.shapes_collide(hit.shape)
             elif isinstance(hit.shape, Ellipse):
-                contact = queries.mirrored(hit.shape.shapes_collide(shape))
+                contact = mirrored(hit.shape.shapes_collide(shape))
             else:
                 contact = hit.contact_point_set
             if contact.points:
@@ -248,6 +203,14 @@ class Space(EventSpace):
         100 vertices, radius 0.0
         from Vec2d(0.0, 0.0) to Vec2d(200.0, 0.0)
         """
-        if queries.has_ellipses(self):
+        if has_ellipses(self):
             options = cast(SpaceDebugDrawOptions, TrueOutlines(options))
         super().debug_draw(options)
+
+
+def mirrored(contact: ContactPointSet) -> ContactPointSet:
+    """The contact of two shapes, seen from the second."""
+    return ContactPointSet(
+        -contact.normal,
+        tuple(ContactPoint(p.point_b, p.point_a, p.distance) for p in contact.points),
+    )

@@ -2,19 +2,15 @@
 
 import pytest
 
-import pymunk_ellipse.contacts
-from pymunk_ellipse.backend import compiled_pre_solve
+from pymunk_ellipse.contacts import backend as backends
+from pymunk_ellipse.contacts.library import load
 
 
 @pytest.fixture(params=["python", "compiled"])
-def backend(request, monkeypatch):
-    """Resolves the contacts of spaces in one way, then in the other."""
-    if request.param == "compiled":
-        pytest.importorskip("numba")
-        callback = compiled_pre_solve()
-        if callback is None:
-            pytest.skip("PYMUNK_ELLIPSE_BACKEND is python")
-    else:
-        callback = None
-    monkeypatch.setattr(pymunk_ellipse.contacts, "compiled_pre_solve", lambda: callback)
-    return request.param
+def backend(request):
+    """Resolves contacts in one way, then in the other."""
+    chosen = backends.Python() if request.param == "python" else load()
+    if chosen is None:
+        pytest.skip("there is no library for this machine")
+    with backends.using(chosen):
+        yield request.param

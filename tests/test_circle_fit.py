@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pymunk_ellipse.circle_fit import PlacedEllipse, circle_fit
+from pymunk_ellipse.published_fit import PlacedEllipse, circle_fit
 
 CASES = json.loads((Path(__file__).parent / "circle_fit.json").read_text())["cases"]
 KEYS = ("a", "b", "x", "y", "theta")

@@ -67,7 +67,7 @@ def places(space):
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(
-    ("when", "difference"), [(0, 0.0), (60, 0.05), (200, 1e-3), (480, 1e-6)]
+    ("when", "difference"), [(0, 0.0), (70, 0.05), (200, 1e-3), (480, 1e-6)]
 )
 def test_copy_follows_the_original(way, when, difference):
     """Exactly from the start, else closely: the order in which contacts are solved is a new one."""

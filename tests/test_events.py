@@ -22,9 +22,7 @@ from scenes import (
 
 import pymunk_ellipse
 from pymunk_ellipse import Ellipse
-from pymunk_ellipse._pymunk import ContactHandler
-from pymunk_ellipse.backend import compiled_pre_solve
-from pymunk_ellipse.events import EventSpace
+from pymunk_ellipse.contacts.events import EventSpace
 
 Space = getattr(pymunk_ellipse, "Space", EventSpace)
 
@@ -45,23 +43,7 @@ WAYS = [
 ]
 
 
-@pytest.fixture(params=["python", "compiled"], autouse=True)
-def backend(request, monkeypatch):
-    """Resolves the contacts of every kind of space in one way, then in the other."""
-    callback = None
-    if request.param == "compiled":
-        pytest.importorskip("numba")
-        callback = compiled_pre_solve()
-        if callback is None:
-            pytest.skip("PYMUNK_ELLIPSE_BACKEND is python")
-    enter = ContactHandler.enter
-
-    def enter_with(handler, cp_shape, frame):
-        handler.find_compiled = lambda: callback
-        enter(handler, cp_shape, frame)
-
-    monkeypatch.setattr(ContactHandler, "enter", enter_with)
-    return request.param
+pytestmark = pytest.mark.usefixtures("backend")
 
 
 @pytest.fixture(autouse=True)

@@ -8,11 +8,29 @@ import pytest
 from test_narrowphase import KINDS, random_pair
 
 from pymunk_ellipse import Ellipse
-from pymunk_ellipse.hull import hull_with_moment, rounded_hull
-
-hulls = pytest.mark.parametrize("hull", [rounded_hull, hull_with_moment])
+from pymunk_ellipse.chipmunk.private import c_points
+from pymunk_ellipse.hull import VERTICES, stretch, unit_polygon
 
 DIRECTIONS = np.linspace(0, 2 * pi, 5000, endpoint=False)
+
+
+def rounded_hull(a, b, angle, x, y, count=VERTICES, rounding=0.2):
+    """Vertices and radius of the hull of an ellipse with a at this angle and its centre at (x, y)."""
+    shape = Ellipse(None, a, b, (x, y), angle)
+    (m, n, p, q, tx, ty), radius = stretch(shape._frame, rounding)
+    vertices = [
+        (m * u + p * v + tx, n * u + q * v + ty) for u, v in unit_polygon(count)
+    ]
+    return vertices, radius
+
+
+def test_is_the_polygon_that_pymunk_has():
+    shape = Ellipse(None, 3, 1, (4, 5), 0.7)
+    vertices, radius = rounded_hull(3, 1, 0.7, 4, 5)
+    assert shape.radius == radius
+    found = sorted(map(tuple, shape.get_vertices()))
+    for vertex, expected in zip(found, sorted(vertices), strict=True):
+        assert vertex == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("rounding", [0.0, 0.05, 0.5, 0.99])
@@ -33,10 +51,9 @@ def supports(vertices, radius, cosine, sine):
 
 @pytest.mark.parametrize("count", [4, 5, 6, 7, 8, 9, 12, 16, 32])
 @pytest.mark.parametrize("aspect", [1.0, 1.5, 3.0, 10.0, 100.0, 1e4])
-@hulls
-def test_contains_the_ellipse(hull, aspect, count):
+def test_contains_the_ellipse(aspect, count):
     for a, b in ((aspect, 1.0), (1.0, aspect), (1e-3 * aspect, 1e-3)):
-        vertices, radius = hull(a, b, 0.0, 0.0, 0.0, count)
+        vertices, radius = rounded_hull(a, b, 0.0, 0.0, 0.0, count)
         assert len(vertices) == count
         assert radius > 0
         # Directions evenly spaced, and the normals at points evenly spaced on the ellipse.
@@ -52,20 +69,18 @@ def test_contains_the_ellipse(hull, aspect, count):
 
 @pytest.mark.parametrize("count", [8, 12, 16])
 @pytest.mark.parametrize("aspect", [1.0, 2.0, 5.0])
-@hulls
-def test_is_not_much_larger(hull, aspect, count):
-    vertices, radius = hull(aspect, 1.0, 0.0, 0.0, 0.0, count)
+def test_is_not_much_larger(aspect, count):
+    vertices, radius = rounded_hull(aspect, 1.0, 0.0, 0.0, 0.0, count)
     cosine, sine = np.cos(DIRECTIONS), np.sin(DIRECTIONS)
     ellipse = np.hypot(aspect * cosine, sine)
     excess = supports(vertices, radius, cosine, sine) - ellipse
     assert excess.max() < 0.3 * aspect * (8 / count) ** 2
 
 
-@hulls
-def test_position_and_angle(hull):
+def test_position_and_angle():
     angle, x, y = 0.7, 3.0, -4.0
-    vertices, radius = hull(3.0, 1.0, 0.0, 0.0, 0.0)
-    placed, same = hull(3.0, 1.0, angle, x, y)
+    vertices, radius = rounded_hull(3.0, 1.0, 0.0, 0.0, 0.0)
+    placed, same = rounded_hull(3.0, 1.0, angle, x, y)
     assert same == pytest.approx(radius)
     for (u, v), found in zip(vertices, placed, strict=True):
         turned = (
@@ -75,12 +90,18 @@ def test_position_and_angle(hull):
         assert found == pytest.approx(turned)
 
 
-@pytest.mark.parametrize("count", [4, 5, 8, 12, 32])
 @pytest.mark.parametrize("aspect", [1.0, 2.0, 50.0])
-def test_moment_is_that_of_the_ellipse(aspect, count):
-    vertices, _radius = hull_with_moment(aspect, 1.0, 0.3, 0.0, 0.0, count)
-    moment = pymunk.moment_for_poly(1.0, vertices)
-    assert moment == pytest.approx((aspect**2 + 1) / 4, rel=1e-12)
+def test_mass_properties_are_those_of_the_ellipse(aspect):
+    """Before and after it takes another shape, in a body that weighs what its shapes do."""
+    body = pymunk.Body()
+    space = pymunk.Space()
+    shape = Ellipse(body, 1, 1, (3, 4))
+    shape.mass = 2
+    space.add(body, shape)
+    shape.unsafe_set_semi_axes(aspect, 1)
+    assert body.moment == pytest.approx(2 * (aspect**2 + 1) / 4, rel=1e-12)
+    assert tuple(body.center_of_gravity) == (3, 4)
+    assert shape.area == pytest.approx(pi * aspect, rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -133,12 +154,9 @@ def hulls_touch(first, second):
 def test_touch_test_notices_a_small_hull(monkeypatch):
     """The test above would fail if the hull did not contain the ellipse."""
 
-    def small(a, b, *place):
-        vertices, _radius = rounded_hull(0.8 * a, 0.8 * b, *place)
-        return vertices, 0.0
-
-    monkeypatch.setattr("pymunk_ellipse.ellipse.rounded_hull", small)
-    monkeypatch.setattr("pymunk_ellipse.ellipse.hull_with_moment", small)
+    small = c_points([(0.8 * x, 0.8 * y) for x, y in unit_polygon(VERTICES)])
+    monkeypatch.setattr(Ellipse, "_unit_polygon", small)
+    monkeypatch.setattr(Ellipse, "_rounding", 0.0)
     first = Ellipse(None, 2, 1)
     second = Ellipse(None, 2, 1, offset=(3.9, 0))
     first.body = second.body = pymunk.Body(1, 1)

@@ -47,3 +47,22 @@ def half_extents(frame: Frame) -> tuple[float, float]:
         sqrt(along_x * along_x + across_x * across_x),
         sqrt(along_y * along_y + across_y * across_y),
     )
+
+
+def seen_from(frame: Frame, x: float, y: float, cos: float, sin: float) -> Frame:
+    """The frame, in a body's coordinates, of an ellipse in the world; the body is at (x, y) with the rotation vector (cos, sin).
+
+    >>> seen_from((2.0, 1.0, 1.0, 0.0, 5.0, 0.0), 4.0, -3.0, 0.0, 1.0)
+    (2.0, 1.0, 0.0, -1.0, 3.0, -1.0)
+    """
+    a, b, c, s, wx, wy = frame
+    dx = wx - x
+    dy = wy - y
+    return (
+        a,
+        b,
+        cos * c + sin * s,
+        cos * s - sin * c,
+        cos * dx + sin * dy,
+        cos * dy - sin * dx,
+    )

@@ -7,21 +7,10 @@ from typing import Any
 import pymunk
 from pymunk import Arbiter
 
-from . import _pymunk
-from ._pymunk import (
-    CACHED,
-    FIRST_COLLISION,
-    IGNORE,
-    Callback,
-    ChainedHandler,
-    CollisionHandler,
-    ContactHandler,
-    Dispatcher,
-    call_all_handlers,
-)
-from .backend import compiled_pre_solve
-from .ellipse import Ellipse
-from .resolver import pre_solve
+from ..chipmunk.private import CollisionHandler, call_all_handlers, call_python
+from ..chipmunk.structs import CACHED, FIRST_COLLISION, IGNORE
+from .handler import Callback, ChainedHandler, ContactHandler, Dispatcher, install
+from .saved import with_ellipse
 
 
 class Touches:
@@ -42,17 +31,12 @@ class Touches:
         # The first shape and the normal (x, y) of pairs when they touched last.
         self.normals: dict[Any, tuple[Any, float, float]] = {}
 
-    def with_ellipse(self, arbiter: Any) -> bool:
-        """Whether an arbiter's contact is resolved here."""
-        frames = self.contacts.frames
-        return arbiter.a in frames or arbiter.b in frames
-
     def touch(self, arbiter: Any, space: pymunk.Space) -> bool:
         """Whether the two shapes touch, after telling of it if that is new."""
         if arbiter != self.current:
             self.current = arbiter
             if self.contacts.adopts:
-                self.contacts.adopt_contacts(arbiter)
+                self.contacts.adopt(arbiter)
             touched = arbiter.data and arbiter.state != FIRST_COLLISION
             self.contacts.resolve(arbiter)
             if arbiter.state == IGNORE:
@@ -82,7 +66,7 @@ class Touches:
     def _tell(self, phase: str, arbiter: Any, space: pymunk.Space) -> None:
         self.telling = True
         try:
-            call_all_handlers(phase, arbiter, space, self.contacts)
+            call_all_handlers(phase, arbiter, space)
         finally:
             self.telling = False
 
@@ -96,24 +80,21 @@ class _EventDispatcher(Dispatcher):
 
     def _begin(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
         touches = self._touches
-        if touches.telling or not touches.with_ellipse(arbiter._arbiter):
+        if touches.telling or not with_ellipse(arbiter._arbiter):
             super()._begin(arbiter, space, data)
 
     def _pre_solve(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
         touches = self._touches
         pair = arbiter._arbiter
-        if not touches.with_ellipse(pair) or touches.touch(pair, space):
+        if not with_ellipse(pair) or touches.touch(pair, space):
             super()._pre_solve(arbiter, space, data)
 
     def _separate(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
         touches = self._touches
         pair = arbiter._arbiter
-        # By their objects, because one that is removed is no longer among the frames.
-        exact = any(
-            isinstance(_pymunk.shape_at(shape), Ellipse) for shape in (pair.a, pair.b)
-        )
+        exact = with_ellipse(pair)
         if exact and touches.contacts.adopts:
-            touches.contacts.adopt_contacts(pair)
+            touches.contacts.adopt(pair)
         if touches.telling or not exact or pair.data:
             super()._separate(arbiter, space, data)
 
@@ -135,22 +116,18 @@ class EventHandler(ChainedHandler):
 
     def wire(self) -> None:
         super().wire()
-        self.call_pre_solve(listens(self))
+        call_python(self._handler, "pre_solve", listens(self))
 
 
 class GlobalEventHandler(ContactHandler):
     """The handler of all pairs, the last one that Chipmunk calls."""
 
-    def __init__(self, handler: Any, space: pymunk.Space) -> None:
-        super().__init__(handler, space, pre_solve, compiled_pre_solve)
-
     def make_dispatcher(self) -> Dispatcher:
         self.touches = Touches(self)
         return _EventDispatcher(self, self.touches)
 
-    def wire(self) -> None:
-        super().wire()
-        self.call_resolve(listens(self))
+    def in_python(self) -> bool:
+        return listens(self)
 
 
 class EventSpace(pymunk.Space):
@@ -158,7 +135,7 @@ class EventSpace(pymunk.Space):
 
     def __init__(self, threaded: bool = False) -> None:
         super().__init__(threaded)
-        self._touches = _pymunk.install(self, GlobalEventHandler).touches
+        self._touches = install(self, GlobalEventHandler).touches
 
     def on_collision(
         self,
@@ -178,7 +155,7 @@ class EventSpace(pymunk.Space):
         """
         key = collision_type_a, collision_type_b
         if key not in self._handlers:
-            _pymunk.install(self, self._event_handler, *key)
+            install(self, self._event_handler, *key)
         super().on_collision(
             collision_type_a,
             collision_type_b,

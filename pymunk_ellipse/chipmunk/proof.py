@@ -1,0 +1,217 @@
+"""Proves on shapes and bodies of known numbers that Chipmunk's structs are as structs.h declares them, before anything relies on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+from math import isclose
+from typing import Any
+
+import pymunk
+from pymunk import Transform
+
+from .private import ffi as pymunk_ffi
+from .structs import (
+    CIRCLE,
+    INLINE_VERTICES,
+    POLYGON,
+    SEGMENT,
+    address,
+    body_at,
+    circle_at,
+    ffi,
+    polygon_at,
+    segment_at,
+    shape_at,
+)
+
+# The versions that the tests pass on.
+KNOWN = "7.0.1 to 7.3.1"
+
+# A field, what was found there and what is right.
+Finding = tuple[str, Any, Any]
+
+
+@cache
+def prove_structs() -> None:
+    """Compare every field that is used with what pymunk says of it.
+
+    Raises RuntimeError that names the first field that is not where structs.h says.
+    """
+    problem = first_difference(findings())
+    if problem is not None:
+        raise RuntimeError(
+            f"pymunk_ellipse does not know pymunk {pymunk.version}: it keeps {problem} elsewhere "
+            f"than pymunk {KNOWN} does; one of those works"
+        )
+
+
+def first_difference(found: Iterable[Finding]) -> str | None:
+    """The first field that is not what is right, or None.
+
+    The fields come in the order in which they lie in memory, and nothing is read behind one
+    that differs.
+    """
+    for name, value, expected in found:
+        if isinstance(expected, tuple):
+            same = all(
+                isclose(number, right, rel_tol=1e-12)
+                for number, right in zip(value, expected, strict=True)
+            )
+        else:
+            same = value == expected
+        if not same:
+            return name
+    return None
+
+
+def findings() -> Iterator[Finding]:
+    """All fields that are used."""
+    yield from _arbiter()
+    yield from _classes()
+    yield from _body()
+    yield from _circle()
+    yield from _segment()
+    yield from _polygon()
+
+
+def _pair(vector: Any) -> tuple[float, float]:
+    return vector.x, vector.y
+
+
+def _arbiter() -> Iterator[Finding]:
+    # pymunk declares these two structs itself.
+    for ours, theirs, fields in (
+        ("Contact", "struct cpContact", ("r1", "r2", "jnAcc", "jtAcc", "hash")),
+        (
+            "Arbiter",
+            "struct cpArbiter",
+            (
+                *("e", "u", "surface_vr", "data", "a", "b", "body_a", "body_b"),
+                *("count", "contacts", "n", "state", "processCollision"),
+            ),
+        ),
+    ):
+        for field in fields:
+            yield (
+                f"a {theirs.split()[1]}'s {field}",
+                ffi.offsetof(ours, field),
+                pymunk_ffi.offsetof(theirs, field),
+            )
+
+
+def _classes() -> Iterator[Finding]:
+    # The pointer to a shape's class, before it is followed: one for each kind, and none of them
+    # null or a small number.
+    shapes = (
+        pymunk.Circle(None, 1.0),
+        pymunk.Circle(None, 2.0),
+        pymunk.Segment(None, (0.0, 0.0), (1.0, 0.0), 1.0),
+        pymunk.Poly.create_box(None),
+    )
+    classes = [shape_at(shape._shape).klass for shape in shapes]
+    distinct = min(classes) >= 0x10000 and len(set(classes)) == 3
+    yield "a shape's class", distinct and classes[0] == classes[1], True
+
+
+def _body() -> Iterator[Finding]:
+    body = pymunk.Body(2.0, 3.0)
+    body.center_of_gravity = 1.5, 2.5
+    body.angle = 0.5
+    body.position = 31.5, 47.25
+    body.angular_velocity = 8.75
+    found = body_at(body._body)
+    cos, sin = body.rotation_vector
+    gravity = body.local_to_world(body.center_of_gravity)
+    yield "a body's center of gravity", _pair(found.cog), (1.5, 2.5)
+    yield "a body's position", _pair(found.p), tuple(gravity)
+    yield "a body's angular velocity", (found.w,), (8.75,)
+    at = found.transform
+    yield (
+        "a body's transform",
+        (at.a, at.b, at.c, at.d, at.tx, at.ty),
+        (cos, sin, -sin, cos, 31.5, 47.25),
+    )
+
+
+_TRANSFORM = Transform(0.6, 0.8, -0.8, 0.6, 31.5, 47.25)
+
+
+def _shape(shape: pymunk.Shape, kind: int) -> Iterator[Finding]:
+    body = pymunk.Body(1.0, 1.0)
+    shape.body = body
+    shape.mass = 1.75
+    shape.surface_velocity = 3.25, -4.75
+    found = shape_at(shape._shape)
+    yield "a shape's body", found.on_body, address(body._body)
+    yield "a shape's mass", (found.m,), (1.75,)
+    yield "a shape's moment", (found.i,), (shape.moment / shape.mass,)
+    yield "a shape's center of gravity", _pair(found.cog), shape.center_of_gravity
+    yield "a shape's area", (found.area,), (shape.area,)
+    yield "a shape's surface velocity", _pair(found.surfaceV), (3.25, -4.75)
+    yield "a shape's kind", found.shape_class.type, kind
+    box = shape.update(_TRANSFORM)
+    bb = found.bb
+    yield "a shape's box", (bb.left, bb.bottom, bb.right, bb.top), tuple(box)
+
+
+def _circle() -> Iterator[Finding]:
+    circle = pymunk.Circle(None, 5.5, (1.5, 2.5))
+    yield from _shape(circle, CIRCLE)
+    found = circle_at(circle._shape)
+    yield "a circle's offset", _pair(found.c), (1.5, 2.5)
+    yield "a circle's center", _pair(found.tc), tuple(_TRANSFORM @ circle.offset)
+    yield "a circle's radius", (found.r,), (5.5,)
+
+
+def _segment() -> Iterator[Finding]:
+    segment = pymunk.Segment(None, (1.5, 2.5), (4.5, 6.5), 7.25)
+    segment.set_neighbors((11.5, 13.5), (17.5, 19.5))
+    yield from _shape(segment, SEGMENT)
+    found = segment_at(segment._shape)
+    yield "a segment's a", _pair(found.a), (1.5, 2.5)
+    yield "a segment's b", _pair(found.b), (4.5, 6.5)
+    local = found.n
+    yield "a segment's local normal", _pair(local), (0.8, -0.6)
+    yield "a segment's start", _pair(found.ta), tuple(_TRANSFORM @ segment.a)
+    yield "a segment's end", _pair(found.tb), tuple(_TRANSFORM @ segment.b)
+    turned = 0.6 * local.x - 0.8 * local.y, 0.8 * local.x + 0.6 * local.y
+    yield "a segment's normal", _pair(found.tn), turned
+    yield "a segment's radius", (found.r,), (7.25,)
+    yield "a segment's neighbor at a", _pair(found.a_tangent), (10.0, 11.0)
+    yield "a segment's neighbor at b", _pair(found.b_tangent), (13.0, 13.0)
+
+
+def _polygon() -> Iterator[Finding]:
+    corners = [
+        (8.0, 1.0),
+        (6.0, 6.5),
+        (1.0, 8.5),
+        (-5.5, 6.0),
+        (-7.5, -3.0),
+        (2.5, -9.5),
+    ]
+    for count in (INLINE_VERTICES, 3):
+        polygon = pymunk.Poly(None, corners[:count], radius=7.25)
+        yield from _shape(polygon, POLYGON)
+        found = polygon_at(polygon._shape)
+        yield "a polygon's radius", (found.r,), (7.25,)
+        yield "a polygon's vertex count", found.count, count
+        inline = address(found.inline_planes)
+        yield "a polygon's planes", address(found.planes), inline
+        local = polygon.get_vertices()
+        world = [_TRANSFORM @ vertex for vertex in local]
+        planes = found.planes
+        for i, vertex in enumerate(world):
+            normal = (world[i - 1] - vertex).normalized().perpendicular()
+            plane = tuple(planes[k] for k in range(4 * i, 4 * i + 4))
+            yield "a polygon's vertices and normals", plane, (*vertex, *normal)
+        for i, vertex in enumerate(local):
+            k = 4 * (count + i)
+            normal = (local[i - 1] - vertex).normalized().perpendicular()
+            plane = tuple(planes[k] for k in range(k, k + 4))
+            yield "a polygon's local vertices and normals", plane, (*vertex, *normal)
+    many = pymunk.Poly(None, [*corners, (5.0, -8.0)])
+    found = polygon_at(many._shape)
+    outside = address(found.planes) != address(found.inline_planes)
+    yield "how many planes are inline in a polygon", outside, True

@@ -1,0 +1,111 @@
+/* Chipmunk's structs, each up to the last field that is used, and what the compiled library exports.
+
+   From chipmunk_structs.h of Munk2D, as pymunk 7 ships it. cffi reads this file for Python and for
+   the compiler of the kernel, and the library's C code includes it. A pointer that is both followed
+   and compared has two names: one for the struct, one for the address. */
+
+typedef struct { double x, y; } Vect;
+typedef struct { double a, b, c, d, tx, ty; } Transform;
+typedef struct { double left, bottom, right, top; } Box;
+
+typedef struct {
+    Vect r1, r2;
+    double nMass, tMass, bounce, jnAcc, jtAcc, jBias, bias;
+    intptr_t hash;
+} Contact;
+
+typedef struct {
+    intptr_t velocity_func, position_func;
+    double m, m_inv, i, i_inv;
+    Vect cog, p, v, f;
+    double a, w, t;
+    Transform transform;
+} Body;
+
+typedef struct {
+    int type;
+    Box (*cache_data)(void *shape, Transform transform);
+    void (*destroy)(void *shape);
+    void (*point_query)(void *shape, Vect point, void *info);
+    void (*segment_query)(void *shape, Vect start, Vect end, double radius, void *info);
+} ShapeClass;
+
+typedef struct {
+    union { intptr_t klass; ShapeClass *shape_class; };
+    intptr_t space;
+    union { intptr_t on_body; Body *body; };
+    double m, i;
+    Vect cog;
+    double area;
+    Box bb;
+    unsigned char sensor;
+    double e, u;
+    Vect surfaceV;
+    intptr_t userData, type, group;
+    unsigned int categories, mask;
+    intptr_t next, prev, hashid;
+} Shape;
+
+typedef struct {
+    Shape shape;
+    Vect c, tc;
+    double r;
+} Circle;
+
+typedef struct {
+    Shape shape;
+    Vect a, b, n, ta, tb, tn;
+    double r;
+    Vect a_tangent, b_tangent;
+} Segment;
+
+/* planes holds four numbers for each vertex: the vertex and the normal of the face that ends there,
+   those in the world first, then the local ones. */
+typedef struct {
+    Shape shape;
+    double r;
+    int count;
+    double *planes;
+    double inline_planes[48];
+} Poly;
+
+/* The hull of an ellipse. A polygon of few vertices keeps its planes where the frames are here; a
+   hull has more, which are elsewhere, and leaves that room to the ellipse. */
+typedef struct {
+    Shape shape;
+    double r;
+    int count;
+    double *planes;
+    double local[6];
+    double world[6];
+} Hull;
+
+typedef struct {
+    double e, u;
+    Vect surface_vr;
+    union { intptr_t data; Contact *last; };
+    union { intptr_t a; Shape *shape_a; };
+    union { intptr_t b; Shape *shape_b; };
+    Body *body_a, *body_b;
+    intptr_t threads[4];
+    int count;
+    union { intptr_t contacts; Contact *contact; };
+    Vect n;
+    intptr_t handlers[4];
+    unsigned char swapped;
+    unsigned int stamp;
+    int state;
+    unsigned char processCollision;
+} Arbiter;
+
+typedef struct { intptr_t shape; Vect point; double distance; Vect gradient; } PointQueryInfo;
+typedef struct { intptr_t shape; Vect point, normal; double alpha; } SegmentQueryInfo;
+
+/* What the compiled library exports. An ellipse is a Hull, a shape any shape of Chipmunk's. Results are
+   numbers in a row, as the Python functions of the same name return them. */
+void pe_pre_solve(void *arbiter, void *space, void *data);
+void *pe_shape_class(const void *of_polygons);
+void pe_shape_contact(void *ellipse, void *shape, double *result);
+void pe_nearest_now(void *ellipse, double x, double y, double *result);
+void pe_cast_now(void *ellipse, double start_x, double start_y, double end_x, double end_y, double radius, double *result);
+const char *pe_digest(void);

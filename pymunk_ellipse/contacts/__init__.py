@@ -1,0 +1,1 @@
+"""What pymunk calls in each step: the resolver of contacts, the handlers that call it, and events."""

@@ -25,19 +25,27 @@ from math import acos, atan2, cos, pi, sin, sqrt
 from .frame import Frame
 
 Pair = tuple[float, float, float, float, float, float, float, float]
-Cone = tuple[float, float, float, float]
+
+# f, its derivative f' along the counterclockwise turn of n, the distance along n between the
+# centres of the two circles, the derivative of the sum of their radii, n (x, y), the first
+# ellipse's support point (x, y), the radius of its circle and that radius's derivative.
+Circles = tuple[float, float, float, float, float, float, float, float, float, float]
 
 # f, n (x, y) and the first ellipse's support point (x, y).
 Maximum = tuple[float, float, float, float, float]
 
-# The fit ends when the next turn of the normal is smaller (radians), and promises to change the
-# depth by less than this part of the shorter semi-axis: where circles are large, a small turn
-# moves the contact far. That turn is then made without a look at what it leads to.
-TURN_TOLERANCE = 1e-6
+# The climb ends when the next turn of the normal is smaller (radians), and promises to change the
+# depth by less than this part of the smaller shape's shorter semi-axis: where circles are large,
+# a small turn moves the contact far. That turn is then made without a look at what it leads to;
+# the cube of the normal's error is left.
+TURN_TOLERANCE = 1e-5
 RISE_TOLERANCE = 1e-9
 
-# A larger turn is cut to this (radians, nearly): Newton's step does not see past a sharp end.
+# A larger turn is cut to this (radians, nearly): a step does not see past a sharp end.
 MAX_TURN = 0.5
+
+# What the change of the radii may add to Newton's step, as a part of it.
+MAX_CORRECTION = 0.5
 
 # No other normal gives a depth that is smaller by more than this part of the smallest semi-axis.
 DEPTH_TOLERANCE = 5e-7
@@ -49,13 +57,11 @@ SUFFICIENT_RISE = 0.1
 ROUNDOFF = 2e-15
 
 # Bounds on the loops, far above what the climb (30) and the sweep (60) were seen to take at aspect ratio 1000.
-MAX_TURNS = 100
+MAX_TURNS = 200
 MAX_JUMPS = 300
 
 # Keeps a point, whose support function is zero, from dividing by it. Lengths that matter are above 1e-50.
 TINY = 1e-290
-
-ALL_ROUND: Cone = (0.0, 0.0, 0.0, 0.0)
 
 
 def pair_of(first: Frame, second: Frame) -> Pair:
@@ -76,19 +82,14 @@ def pair_of(first: Frame, second: Frame) -> Pair:
     )
 
 
-def fitted_circles(
-    pair: Pair, mx: float, my: float
-) -> tuple[float, float, float, float, float, float, float, float]:
+def fitted_circles(pair: Pair, mx: float, my: float) -> Circles:
     """Fit a circle to the first ellipse where its normal is n and to the second where it is -n.
 
     n is (mx, my) brought to unit length here, because the division need not be waited for.
 
-    Returns f, its derivative f' along the counterclockwise turn of n, the distance along n
-    between the centres of the two circles, n (x, y), the first ellipse's support point (x, y)
-    and the radius of its circle.
-
     Support point and radius of curvature of an ellipse in the direction u are
-    (a^2 ux, b^2 uy)/h and a^2 b^2/h^3, with h = sqrt(a^2 ux^2 + b^2 uy^2).
+    (a^2 ux, b^2 uy)/h and a^2 b^2/h^3, with h = sqrt(a^2 ux^2 + b^2 uy^2). As u turns, h
+    changes by as much as the support point lies aside of u.
     """
     a1, b1, a2, b2, c, s, dx, dy = pair
     length = sqrt(mx * mx + my * my)
@@ -112,14 +113,18 @@ def fitted_circles(
     mean2 = a2 * b2 * inverse2
     radius2 = mean2 * mean2 * inverse2
 
+    p2x, p2y = c * p2x - s * p2y, s * p2x + c * p2y
     # From the first ellipse's support point to the second's.
-    qx = dx - p1x - (c * p2x - s * p2y)
-    qy = dy - p1y - (s * p2x + c * p2y)
+    qx = dx - p1x - p2x
+    qy = dy - p1y - p2y
     nx = mx * shorten
     ny = my * shorten
     f = qx * nx + qy * ny
     slope = qy * nx - qx * ny
-    return f, slope, f + radius1 + radius2, nx, ny, p1x, p1y, radius1
+    change1 = -3.0 * radius1 * inverse1 * (p1y * nx - p1x * ny)
+    change2 = -3.0 * radius2 * inverse2 * (p2y * nx - p2x * ny)
+    between = f + radius1 + radius2
+    return f, slope, between, change1 + change2, nx, ny, p1x, p1y, radius1, change1
 
 
 def first_guess(pair: Pair) -> tuple[float, float]:
@@ -136,107 +141,135 @@ def first_guess(pair: Pair) -> tuple[float, float]:
     return nx / size, ny / size
 
 
-def sharpest(pair: Pair) -> float:
-    """The smallest radius of curvature that the Minkowski sum of the two ellipses can have."""
-    a1, b1, a2, b2, _c, _s, _dx, _dy = pair
-    radius = b1 / a1 * b1
-    if a2 > 0.0:
-        radius += b2 / a2 * b2
-    return radius
+def smallest_axis(pair: Pair) -> float:
+    """The shorter semi-axis of the smaller of the two; a point's does not count."""
+    return pair[3] if 0.0 < pair[3] < pair[1] else pair[1]
 
 
-def climb(pair: Pair, nx: float, ny: float, cone: Cone) -> Maximum:
-    """Turn n uphill to a maximum of f within the cone.
+def inscribed_radius(pair: Pair, nx: float, ny: float) -> float:
+    """The radius of the largest disc in the Minkowski sum of the two that touches its surface where the normal is n.
 
-    The cone's four numbers are the unit vectors (x, y) where it begins and, counterclockwise,
-    ends; ALL_ROUND has no limits. Newton's step for f' = 0 turns n to the line that joins the
-    centres of the two fitted circles; a step that leaves the cone or gains too little is halved.
+    In an ellipse the largest disc that touches at a point has its centre where the normal there
+    meets the longer semi-axis (the medial axis of an ellipse), and so the radius b^2/h.
     """
+    a1, b1, a2, b2, c, s, _dx, _dy = pair
+    along1 = a1 * nx
+    across1 = b1 * ny
+    along2 = a2 * (c * nx + s * ny)
+    across2 = b2 * (c * ny - s * nx)
+    h1 = sqrt(along1 * along1 + across1 * across1) + TINY
+    h2 = sqrt(along2 * along2 + across2 * across2) + TINY
+    return b1 * (b1 / h1) + b2 * (b2 / h2)
+
+
+def climb(pair: Pair, nx: float, ny: float) -> Maximum:
+    """Turn n uphill to a maximum of f; a step that gains too little is halved."""
     noise = ROUNDOFF * (pair[0] + pair[2])
-    least_rise = RISE_TOLERANCE * pair[1]
-    f, slope, between, nx, ny, px, py, radius = fitted_circles(pair, nx, ny)
+    least_rise = max(RISE_TOLERANCE * smallest_axis(pair), noise)
+    f = -1.0 / TINY
+    slope = 0.0
+    between = 0.0
+    px = 0.0
+    py = 0.0
+    radius = 0.0
+    change1 = 0.0
+    turn = 0.0
+    mx = nx
+    my = ny
     for _ in range(MAX_TURNS):
-        if between > 0.0:
-            if abs(slope) <= noise:
+        g, g_slope, g_between, change, mx, my, qx, qy, g_radius, g_change1 = (
+            fitted_circles(pair, mx, my)
+        )
+        if g >= f + SUFFICIENT_RISE * slope * turn - noise:
+            f = g
+            slope = g_slope
+            between = g_between
+            nx = mx
+            ny = my
+            px = qx
+            py = qy
+            radius = g_radius
+            change1 = g_change1
+            turn = next_turn(slope, between, change)
+            if between > 0.0 and abs(slope) <= noise:
                 break
-            turn = slope / between
-            if turn > MAX_TURN:
-                turn = MAX_TURN
-            elif turn < -MAX_TURN:
-                turn = -MAX_TURN
         else:
-            # Near a minimum of f Newton's step leads downhill.
-            turn = MAX_TURN if slope >= 0.0 else -MAX_TURN
-
-        uphill = False
-        while abs(turn) > TURN_TOLERANCE or turn * slope > least_rise:
-            mx = nx - turn * ny
-            my = ny + turn * nx
-            if in_cone(cone, mx, my):
-                circles = fitted_circles(pair, mx, my)
-                if circles[0] >= f + SUFFICIENT_RISE * slope * turn - noise:
-                    uphill = True
-                    break
             turn *= 0.5
-        if not uphill:
+        if abs(turn) <= TURN_TOLERANCE and turn * slope <= least_rise:
             break
-        f, slope, between, nx, ny, px, py, radius = circles
+        mx = nx - turn * ny
+        my = ny + turn * nx
 
-    # The last turn, on the two circles; the square of n's error is left.
-    turn = slope / between if between > 0.0 else 0.0
-    if abs(turn) <= TURN_TOLERANCE and in_cone(cone, nx - turn * ny, ny + turn * nx):
+    if abs(turn) <= TURN_TOLERANCE:
         half_square = 0.5 * turn * turn
-        step_x = -turn * ny - half_square * nx
-        step_y = turn * nx - half_square * ny
-        f += 0.5 * slope * turn
-        nx += step_x
-        ny += step_y
-        px += radius * step_x
-        py += radius * step_y
+        along = radius * turn + change1 * half_square
+        inward = radius * half_square
+        f += turn * slope - half_square * between
+        px -= along * ny + inward * nx
+        py += along * nx - inward * ny
+        nx, ny = (
+            nx - turn * ny - half_square * nx,
+            ny + turn * nx - half_square * ny,
+        )
     return f, nx, ny, px, py
 
 
-def in_cone(cone: Cone, nx: float, ny: float) -> bool:
-    """Whether n is in a cone that is narrower than a half circle, or in ALL_ROUND."""
-    first_x, first_y, last_x, last_y = cone
-    return first_x * ny >= first_y * nx and nx * last_y >= ny * last_x
+def next_turn(slope: float, between: float, change: float) -> float:
+    """The tangent of the angle to turn n by.
 
-
-def sweep(
-    pair: Pair, nx: float, ny: float, extent: float, cone: Cone, best: Maximum
-) -> Maximum:
-    """The best maximum, after proving that f exceeds it nowhere on the arc of the given extent, counterclockwise from n.
-
-    Where it does, climb within the cone and go on with the better maximum. If that is above
-    zero, the two are apart and it is the only one. A disc as small as the sharpest ends, of
-    radius r, rolls freely inside the Minkowski sum of the two (Blaschke's rolling theorem);
-    from its position at n,
-
-        f(n turned by phi) <= (f + r) cos phi + f' sin phi - r
-
-    so one jump passes every n for which the right side stays below best.
+    Newton's step for f' = 0 turns n to the line that joins the centres of the two fitted
+    circles. While n turns, the radii change; Chebyshev's method allows for it, which leaves the
+    cube of n's error instead of the square.
     """
-    a1, b1, a2, b2, _c, _s, _dx, _dy = pair
-    r = sharpest(pair)
-    slack = DEPTH_TOLERANCE * (b2 if 0.0 < b2 < b1 else b1)
-    slack = max(slack, ROUNDOFF * (a1 + a2))
+    if between > 0.0:
+        inverse = 1.0 / between
+        turn = slope * inverse
+        correction = 0.5 * change * inverse * turn
+        if abs(correction) < MAX_CORRECTION:
+            turn -= correction * turn
+        if turn > MAX_TURN:
+            turn = MAX_TURN
+        elif turn < -MAX_TURN:
+            turn = -MAX_TURN
+        return turn
+    # Near a minimum of f Newton's step leads downhill.
+    return MAX_TURN if slope >= 0.0 else -MAX_TURN
+
+
+def sweep(pair: Pair, best: Maximum) -> Maximum:
+    """The best maximum, after proving that no n has a larger f.
+
+    Once around from the maximum; where f is larger, climb from there and go on with the better
+    one. If that is above zero, the two are apart and there is no other.
+    """
+    _f, nx, ny, _px, _py = best
+    noise = ROUNDOFF * (pair[0] + pair[2])
+    slack = max(DEPTH_TOLERANCE * smallest_axis(pair), noise)
     swept = 0.0
     for _ in range(MAX_JUMPS):
-        f, slope, _between, nx, ny, _px, _py, _radius = fitted_circles(pair, nx, ny)
-        if f > best[0]:
-            best = climb(pair, nx, ny, cone)
-        ceiling = best[0] + slack + r
-        reach = sqrt((f + r) * (f + r) + slope * slope)
-        if best[0] > 0.0 or ceiling >= reach:
-            break
-        crossing = acos(max(-1.0, ceiling / reach))
-        jump = atan2(slope, f + r) - crossing
-        if jump < 0.0:
-            jump += 2.0 * pi
+        circles = fitted_circles(pair, nx, ny)
+        f, slope, _between, _change, nx, ny, _px, _py, _radius, _change1 = circles
+        if f > best[0] + noise:
+            best = climb(pair, nx, ny)
+        jump = jump_past(f, slope, inscribed_radius(pair, nx, ny), best[0] + slack)
         swept += jump
-        if swept >= extent:
+        if best[0] > 0.0 or swept >= 2.0 * pi:
             break
-        turned_x = nx * cos(jump) - ny * sin(jump)
-        ny = ny * cos(jump) + nx * sin(jump)
-        nx = turned_x
+        nx, ny = nx * cos(jump) - ny * sin(jump), ny * cos(jump) + nx * sin(jump)
     return best
+
+
+def jump_past(f: float, slope: float, radius: float, ceiling: float) -> float:
+    """The largest angle (radians) that n may turn by, counterclockwise, and f stays below the ceiling for certain.
+
+    A disc of the given radius that touches the Minkowski sum of the two from within, where its
+    normal is n, bounds the sum's support function from below, so that
+
+        f(n turned by phi) <= (f + radius) cos phi + f' sin phi - radius
+    """
+    height = f + radius
+    reach = sqrt(height * height + slope * slope)
+    if ceiling + radius >= reach:
+        return 2.0 * pi
+    jump = atan2(slope, height) - acos(max(-1.0, (ceiling + radius) / reach))
+    return jump if jump >= 0.0 else jump + 2.0 * pi

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
-
-from .common_normal import ALL_ROUND, climb, first_guess, pair_of, sharpest, sweep
+from .common_normal import climb, first_guess, inscribed_radius, pair_of, sweep
 from .frame import Frame
 
 # Distance, normal from the first shape (x, y), contact point on it from the ellipse's centre (x, y).
@@ -25,17 +23,18 @@ def ellipse_ellipse(first: Frame, second: Frame, nx: float, ny: float) -> Contac
     (0.5, 1.0, 0.0, 2.0, 0.0)
     """
     pair = pair_of(first, second)
-    _a, b, c, s, _x, _y = first
+    a, b, c, s, _x, _y = first
     mx = c * nx + s * ny
     my = c * ny - s * nx
     if mx == 0.0 and my == 0.0:
         mx, my = first_guess(pair)
 
-    contact = climb(pair, mx, my, ALL_ROUND)
-    # Only deeper than the sharpest ends are round can another normal be better; most are not
-    # as deep as the first one's.
-    if contact[0] * pair[0] < -b * b and contact[0] < -sharpest(pair):
-        contact = sweep(pair, contact[1], contact[2], 2.0 * pi, ALL_ROUND, contact)
+    contact = climb(pair, mx, my)
+    distance, mx, my, _px, _py = contact
+    # Only deeper than a disc that fits in there can another normal be better, and most are not
+    # even as deep as the first one's sharp ends are round.
+    if distance * a < -b * b and distance < -inscribed_radius(pair, mx, my):
+        contact = sweep(pair, contact)
     return turned(contact, c, s)
 
 

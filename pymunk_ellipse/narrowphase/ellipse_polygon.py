@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import acos, sqrt
+from math import cos, pi, sin, sqrt
 
-from .common_normal import ROUNDOFF, TINY, Cone, Pair, climb, sweep
+from .common_normal import (
+    DEPTH_TOLERANCE,
+    MAX_JUMPS,
+    ROUNDOFF,
+    TINY,
+    climb,
+    jump_past,
+)
 from .ellipse_ellipse import Contact, ellipse_ellipse, turned
 from .frame import Frame
 
@@ -34,60 +41,131 @@ def polygon_contact(
 ) -> tuple[Contact, int]:
     """The contact of an ellipse and a convex polygon, and the index of the vertex that is touched, or FACE.
 
-    Between the normals of two neighbouring faces the polygon is the point they share, so f has
-    its largest value either along the normal of a face or at a stationary point of f for one
-    vertex, in the cone between the normals of its two faces. If the face with the largest f
-    does not have the ellipse's support point in front of it, f rises into the cone at that end
-    of the face, and the maximum is there.
+    f has its largest value either along the normal of a face, with the ellipse's support point
+    in front of it, or where it is stationary for a vertex, with no other vertex nearer along
+    the normal. If the face with the largest f does not have the support point in front of it,
+    f rises from there around the vertex at that end.
     """
-    a, b, c, s, _x, _y = ellipse
+    a, b, c, s, x, y = ellipse
     best = -1.0 / TINY
     face = 0
     nx = 0.0
     ny = 0.0
-    support = 0.0
     for i in range(count):
-        ux, uy = normal_to_face(ellipse, planes, i)
-        vx, vy = vertex_in_frame(ellipse, planes, i)
-        au = a * ux
-        bu = b * uy
-        h = sqrt(au * au + bu * bu)
-        f = vx * ux + vy * uy - h - radius
+        outward_x = planes[4 * i + 2]
+        outward_y = planes[4 * i + 3]
+        u = a * (c * outward_x + s * outward_y)
+        v = b * (c * outward_y - s * outward_x)
+        h = sqrt(u * u + v * v)
+        dx = x - planes[4 * i]
+        dy = y - planes[4 * i + 1]
+        f = dx * outward_x + dy * outward_y - h - radius
+        # A face between two equal vertices has no normal.
         if f > best and h > 0.0:
-            best, face, nx, ny, support = f, i, ux, uy, h
-    if support == 0.0:
-        # No face has a length: the polygon is a point.
+            best, face, nx, ny = f, i, -outward_x, -outward_y
+    if nx == 0.0 and ny == 0.0:
         corner = (radius, radius, 1.0, 0.0, planes[0], planes[1])
         return ellipse_ellipse(ellipse, corner, 0.0, 0.0), 0
 
-    # The support point in that direction, and how far it lies past the two ends of the face.
     feature = FACE
-    px = a * a * nx / support
-    py = b * b * ny / support
-    contact = (best, nx, ny, px, py)
+    contact, past_end = along_normal(ellipse, planes, face, radius, nx, ny)
     start = (face - 1) % count
-    vx, vy = vertex_in_frame(ellipse, planes, face)
-    past_end = (px - vx) * ny - (py - vy) * nx
-    vx, vy = vertex_in_frame(ellipse, planes, start)
-    before_start = (vx - px) * ny - (vy - py) * nx
-
-    if past_end > 0.0 or before_start > 0.0:
+    ex = planes[4 * face] - planes[4 * start]
+    ey = planes[4 * face + 1] - planes[4 * start + 1]
+    past_start = past_end + ex * ny - ey * nx
+    if past_end > 0.0 or past_start < 0.0:
         feature = face if past_end > 0.0 else start
-        pair, cone = vertex_pair(ellipse, planes, count, radius, feature)
-        contact = climb(pair, nx, ny, cone)
-
+        contact = around_vertex(ellipse, planes, feature, radius, nx, ny)
+        if not is_nearest(ellipse, planes, count, feature, contact):
+            contact, feature = climb_polygon(ellipse, planes, count, radius, nx, ny)
     if contact[0] < -(b / a * b + radius):
-        for i in range(count):
-            pair, cone = vertex_pair(ellipse, planes, count, radius, i)
-            first_x, first_y, last_x, last_y = cone
-            cosine = first_x * last_x + first_y * last_y
-            extent = acos(min(1.0, max(-1.0, cosine)))
-            better = sweep(pair, first_x, first_y, extent, cone, contact)
-            # At its ends the cone's f is that of a face, and roundoff must not make a vertex of it.
-            if better[0] > contact[0] + 4.0 * ROUNDOFF * (a + radius):
-                contact = better
+        contact, feature = sweep_polygon(
+            ellipse, planes, count, radius, contact, feature
+        )
+    return contact, feature
+
+
+def climb_polygon(
+    ellipse: Frame,
+    planes: Sequence[float],
+    count: int,
+    radius: float,
+    nx: float,
+    ny: float,
+) -> tuple[Contact, int]:
+    """Turn n uphill to a maximum of f, which belongs to the vertex that is nearest along n, whichever that is.
+
+    Vertices count by where they are alone, so that any number of them may lie on one edge, up
+    to roundoff.
+    """
+    i = nearest_vertex(ellipse, planes, count, nx, ny)
+    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
+    if is_nearest(ellipse, planes, count, i, contact):
+        return contact, i
+
+    # On the way another vertex came nearer. f rises for one and falls for the other along the
+    # normal to both, if that is where the maximum is and nothing else is nearer there.
+    _f, mx, my, _px, _py = contact
+    j = nearest_vertex(ellipse, planes, count, mx, my)
+    sense = 1.0 if nx * my >= ny * mx else -1.0
+    for _ in range(count):
+        ex = planes[4 * j] - planes[4 * i]
+        ey = planes[4 * j + 1] - planes[4 * i + 1]
+        length = sense * sqrt(ex * ex + ey * ey)
+        nx = -ey / length
+        ny = ex / length
+        face, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+        if is_nearest(ellipse, planes, count, i, face):
+            break
+        k = nearest_vertex(ellipse, planes, count, nx, ny)
+        _contact, slope = along_normal(ellipse, planes, k, radius, nx, ny)
+        if sense * slope > 0.0:
+            i = k
+        else:
+            j = k
+    if sense * slope >= 0.0:
+        i = j
+        _contact, slope = along_normal(ellipse, planes, j, radius, nx, ny)
+        if sense * slope <= 0.0:
+            return face, FACE
+    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
+    if is_nearest(ellipse, planes, count, i, contact):
+        return contact, i
+    return face, FACE
+
+
+def sweep_polygon(
+    ellipse: Frame,
+    planes: Sequence[float],
+    count: int,
+    radius: float,
+    best: Contact,
+    feature: int,
+) -> tuple[Contact, int]:
+    """The best contact and its feature, after proving that no n has a larger f: what sweep does, for a polygon."""
+    a, b, _c, _s, _x, _y = ellipse
+    _f, nx, ny, px, py = best
+    noise = ROUNDOFF * (a + radius)
+    if best[0] >= -(b * b / (px * nx + py * ny) + radius):
+        return best, feature
+    slack = max(DEPTH_TOLERANCE * b, noise)
+    swept = 0.0
+    for _ in range(MAX_JUMPS):
+        i = nearest_vertex(ellipse, planes, count, nx, ny)
+        contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+        f, _nx, _ny, px, py = contact
+        if f > best[0] + noise:
+            better, i = climb_polygon(ellipse, planes, count, radius, nx, ny)
+            if better[0] > best[0]:
+                best = better
                 feature = i
-    return turned(contact, c, s), feature
+        inscribed = b * b / (px * nx + py * ny) + radius
+        jump = jump_past(f, slope, inscribed, best[0] + slack)
+        swept += jump
+        if best[0] > 0.0 or swept >= 2.0 * pi:
+            break
+        nx, ny = nx * cos(jump) - ny * sin(jump), ny * cos(jump) + nx * sin(jump)
+    return best, feature
 
 
 def ellipse_segment(
@@ -139,34 +217,60 @@ def line_contact(
     return polygon_contact(ellipse, planes, 2, radius)
 
 
-def normal_to_face(ellipse: Frame, planes: Sequence[float], i: int) -> Vector:
-    """The contact normal into face i, in the ellipse's frame."""
-    _a, _b, c, s, _x, _y = ellipse
-    nx = planes[4 * i + 2]
-    ny = planes[4 * i + 3]
-    return -(c * nx + s * ny), s * nx - c * ny
+def nearest_vertex(
+    ellipse: Frame, planes: Sequence[float], count: int, nx: float, ny: float
+) -> int:
+    """The vertex that is least far along n."""
+    _a, _b, _c, _s, x, y = ellipse
+    nearest = 0
+    least = 1.0 / TINY
+    for i in range(count):
+        far = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
+        if far < least:
+            least = far
+            nearest = i
+    return nearest
 
 
-def vertex_in_frame(ellipse: Frame, planes: Sequence[float], i: int) -> Vector:
-    """Vertex i in the ellipse's frame."""
-    _a, _b, c, s, cx, cy = ellipse
-    x = planes[4 * i] - cx
-    y = planes[4 * i + 1] - cy
-    return c * x + s * y, c * y - s * x
+def is_nearest(
+    ellipse: Frame, planes: Sequence[float], count: int, i: int, contact: Contact
+) -> bool:
+    """Whether no vertex is less far along the contact's normal than vertex i, by more than roundoff."""
+    a, _b, _c, _s, x, y = ellipse
+    _f, nx, ny, _px, _py = contact
+    least = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
+    least -= ROUNDOFF * (a + abs(x) + abs(y))
+    nearest = True
+    for k in range(count):
+        far = (planes[4 * k] - x) * nx + (planes[4 * k + 1] - y) * ny
+        nearest = nearest and far >= least
+    return nearest
 
 
-def vertex_pair(
-    ellipse: Frame, planes: Sequence[float], count: int, radius: float, i: int
-) -> tuple[Pair, Cone]:
-    """The pair of the ellipse and vertex i, a circle of the given radius, and the cone where the vertex counts."""
-    vx, vy = vertex_in_frame(ellipse, planes, i)
-    first_x, first_y = normal_to_face(ellipse, planes, i)
-    last_x, last_y = normal_to_face(ellipse, planes, (i + 1) % count)
-    # A vertex that is repeated ends a face without length, which has no normal.
-    for j in range(1, count):
-        if first_x == 0.0 and first_y == 0.0:
-            first_x, first_y = normal_to_face(ellipse, planes, (i - j) % count)
-        if last_x == 0.0 and last_y == 0.0:
-            last_x, last_y = normal_to_face(ellipse, planes, (i + 1 + j) % count)
-    pair = (ellipse[0], ellipse[1], radius, radius, 1.0, 0.0, vx, vy)
-    return pair, (first_x, first_y, last_x, last_y)
+def along_normal(
+    ellipse: Frame, planes: Sequence[float], i: int, radius: float, nx: float, ny: float
+) -> tuple[Contact, float]:
+    """The contact along the unit vector n as if the plane through vertex i were touched, and f' for that vertex."""
+    a, b, c, s, x, y = ellipse
+    u = a * (c * nx + s * ny)
+    v = b * (c * ny - s * nx)
+    h = sqrt(u * u + v * v)
+    u *= a / h
+    v *= b / h
+    px = c * u - s * v
+    py = s * u + c * v
+    dx = planes[4 * i] - x
+    dy = planes[4 * i + 1] - y
+    f = dx * nx + dy * ny - h - radius
+    return (f, nx, ny, px, py), (dy - py) * nx - (dx - px) * ny
+
+
+def around_vertex(
+    ellipse: Frame, planes: Sequence[float], i: int, radius: float, nx: float, ny: float
+) -> Contact:
+    """The contact with vertex i alone, a circle of the given radius, uphill from n."""
+    a, b, c, s, x, y = ellipse
+    dx = planes[4 * i] - x
+    dy = planes[4 * i + 1] - y
+    pair = (a, b, radius, radius, 1.0, 0.0, c * dx + s * dy, c * dy - s * dx)
+    return turned(climb(pair, c * nx + s * ny, c * ny - s * nx), c, s)

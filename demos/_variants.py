@@ -37,8 +37,8 @@ def without_warm_start() -> Iterator[None]:
     """No contact takes over the impulses of the last step."""
     whole = backends.pre_solve
 
-    def pre_solve(address: int) -> None:
-        whole(address)
+    def pre_solve(address: int, space: int) -> None:
+        whole(address, space)
         arbiter = arbiter_at(address)
         if arbiter.data:
             arbiter.contact.jnAcc = 0.0

@@ -21,7 +21,7 @@ from numba.extending import register_jitable
 
 from kernel.numba_structs import CLASS_SYMBOL, compile_structs, struct
 from pymunk_ellipse.chipmunk import shape_class
-from pymunk_ellipse.contacts import pair, resolver
+from pymunk_ellipse.contacts import handover, pair, resolver
 from pymunk_ellipse.narrowphase import (
     cast,
     common_normal,
@@ -42,6 +42,7 @@ _COMPILED = (
     rolling,
     shape_class,
     pair,
+    handover,
     resolver,
 )
 
@@ -73,7 +74,7 @@ def module() -> Any:
     number = types.float64
     hull = struct("Hull")
     entries: tuple[tuple[Any, tuple[Any, ...]], ...] = (
-        (resolver.pre_solve, (types.int64,)),
+        (resolver.pre_solve, (types.int64, types.int64)),
         (shape_class.cache_data, (hull, number, number, number, number)),
         (shape_class.nearest_updated, (hull, number, number)),
         (shape_class.cast_updated, (hull, *[number] * 5)),

@@ -16,7 +16,7 @@ int _fltused = 0;
 #endif
 
 /* Numba's convention: a place for the result, one for an exception, then the arguments. */
-int pe_native_pre_solve(void *, void **, int64_t);
+int pe_native_pre_solve(void *, void **, int64_t, int64_t);
 int pe_native_cache_data(double *, void **, void *, double, double, double, double);
 int pe_native_nearest_updated(double *, void **, void *, double, double);
 int pe_native_cast_updated(double *, void **, void *, double, double, double, double, double);
@@ -70,9 +70,8 @@ EXPORTED void *pe_shape_class(const void *of_polygons) {
 
 EXPORTED void pe_pre_solve(void *arbiter, void *space, void *data) {
     void *result = 0, *exception = 0;
-    (void)space;
     (void)data;
-    pe_native_pre_solve(&result, &exception, (int64_t)(intptr_t)arbiter);
+    pe_native_pre_solve(&result, &exception, (intptr_t)arbiter, (intptr_t)space);
 }
 
 EXPORTED void pe_shape_contact(void *ellipse, void *shape, double *result) {

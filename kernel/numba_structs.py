@@ -140,6 +140,8 @@ def compile_structs() -> None:
     """Teach numba every function of structs.py that compiled code calls."""
     for name, at in (
         ("Arbiter", structs.arbiter_at),
+        ("Contact", structs.contact_at),
+        ("Space", structs.space_at),
         ("Body", structs.body_at),
         ("Shape", structs.shape_at),
         ("Circle", structs.circle_at),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from math import isfinite, isinf
+from collections.abc import Mapping, Set
+from decimal import Decimal
+from math import isfinite, isnan
+from numbers import Real
 from typing import Any
 
 from pymunk import BB, Vec2d
@@ -19,21 +22,58 @@ FARTHEST_OFFSET = 1e12
 
 
 def number(name: str, value: Any) -> float:
-    """value as a finite float."""
-    if isinstance(value, (str, bytes, bytearray)):
-        raise TypeError(f"{name} must be a number, got {value!r}")
-    try:
-        result = float(value)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise TypeError(f"{name} must be a number, got {value!r}") from error
+    """value as a finite float.
+
+    Raises TypeError for what is no real number, and ValueError for what is not finite.
+    """
+    result = _real(name, value)
     if not isfinite(result):
         raise ValueError(f"{name} must be finite, got {value!r}")
     return result
 
 
+def _real(name: str, value: Any) -> float:
+    """value as a float, of whatever is a real number: Python's, numpy's, a Decimal or a Fraction."""
+    if type(value) is float:
+        return value
+    if not is_real(value):
+        raise TypeError(f"{name} must be a number, got {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise TypeError(f"{name} must be a number, got {value!r}") from error
+
+
+def is_real(value: Any) -> bool:
+    """Whether value is of a type for real numbers, for which float() leaves nothing out.
+
+    float() takes strings as well, drops the imaginary parts of numpy's complex numbers and the
+    masks of its masked arrays, and counts days for dates.
+    """
+    if isinstance(value, (Real, Decimal)):
+        return True
+    if is_masked(value):
+        return False
+    kind = getattr(getattr(value, "dtype", None), "kind", None)
+    return kind in REAL_KINDS
+
+
+def is_masked(value: Any) -> bool:
+    """Whether value is one of numpy's masked arrays, which hide some of their numbers."""
+    return any(base.__module__.startswith("numpy.ma") for base in type(value).__mro__)
+
+
+# Kinds of numpy's types: truth values, integers and floats.
+REAL_KINDS = ("b", "i", "u", "f")
+
+
 def point(name: str, value: Any) -> Vec2d:
-    """value as a vector of two finite floats."""
-    if isinstance(value, (str, bytes, bytearray)):
+    """value as a vector of two finite floats.
+
+    Raises TypeError for what is not a pair in order, and for what number() does not take;
+    ValueError for more or fewer numbers, and for those that are not finite.
+    """
+    if isinstance(value, (str, bytes, bytearray, Set, Mapping)) or is_masked(value):
         raise TypeError(f"{name} must be two numbers, got {value!r}")
     try:
         x, y = value
@@ -46,9 +86,10 @@ def point(name: str, value: Any) -> Vec2d:
 
 def number_or_infinity(name: str, value: Any) -> float:
     """value as a float that is not NaN."""
-    if isinstance(value, float) and isinf(value):
-        return value
-    return number(name, value)
+    result = _real(name, value)
+    if isnan(result):
+        raise ValueError(f"{name} must be finite or infinite, got {value!r}")
+    return result
 
 
 def box(name: str, value: Any) -> BB:

@@ -228,8 +228,13 @@ class Ellipse(pymunk.Poly):
 
         For an ellipse without a body, that is also where shapes_collide takes it to be.
 
-        Raises ValueError for a transform that is not a rotation and a translation.
+        Raises TypeError for what is no pymunk.Transform, and ValueError for one that is not a
+        rotation and a finite translation.
         """
+        if not isinstance(transform, pymunk.Transform):
+            raise TypeError(f"transform must be a pymunk.Transform, got {transform!r}")
+        for name, value in zip(("tx", "ty"), transform[4:], strict=True):
+            _checks.number(f"transform.{name}", value)
         rigid = (
             isclose(transform.a, transform.d, abs_tol=1e-9)
             and isclose(transform.b, -transform.c, abs_tol=1e-9)
@@ -369,6 +374,8 @@ class Ellipse(pymunk.Poly):
         self.__dict__["_in_space"] = reference
         new = reference()
         if new is not None:
+            # They are of another space.
+            hull_at(self._shape).touches = [0] * 16
             handler.enter(new)
 
     def __getstate__(self) -> dict[str, list[tuple[str, Any]]]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, sqrt
-from typing import NamedTuple
+from collections.abc import Mapping, Set
+from math import atan2, frexp, hypot, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
@@ -42,10 +43,11 @@ def ellipse_from_points(points: ArrayLike) -> EllipseParameters:
     array = _rows_of_two("points", points)
     if len(array) < 3:
         raise ValueError(f"points must be three or more, got {len(array)}")
+    array, scale = _scaled(array)
     center = array.mean(axis=0)
     x, y = (array - center).T
     moments = float(np.mean(x * x)), float(np.mean(x * y)), float(np.mean(y * y))
-    return _ellipse("points", float(center[0]), float(center[1]), *moments)
+    return _ellipse("points", float(center[0]), float(center[1]), *moments, scale)
 
 
 def ellipse_from_outline(vertices: ArrayLike) -> EllipseParameters:
@@ -64,6 +66,7 @@ def ellipse_from_outline(vertices: ArrayLike) -> EllipseParameters:
     array = _rows_of_two("vertices", vertices)
     if len(array) < 3:
         raise ValueError(f"vertices must be three or more, got {len(array)}")
+    array, scale = _scaled(array)
     # Near the origin, sums of products lose the fewest digits.
     origin = array.mean(axis=0)
     x, y = (array - origin).T
@@ -88,17 +91,21 @@ def ellipse_from_outline(vertices: ArrayLike) -> EllipseParameters:
         float(xx) - mean_x * mean_x,
         float(xy) - mean_x * mean_y,
         float(yy) - mean_y * mean_y,
+        scale,
     )
 
 
-def ellipse_from_mask(mask: ArrayLike) -> EllipseParameters:
+def ellipse_from_mask(mask: Any) -> EllipseParameters:
     """The ellipse with the centroid and the second moments of what an image shows.
 
     mask has a row for each row of pixels. Its entries are weights, not negative: True and
-    False, or how opaque a pixel is, the alpha channel of a sprite for example. Pixels are
-    squares of side 1; x counts columns and y counts rows from the corner of the first
-    pixel. Where the first row is the top and y is to point up, pass mask[::-1]. a is not
-    shorter than b.
+    False, or how opaque a pixel is. A ``pygame.Mask`` will do as well. Pixels are squares of
+    side 1; x counts columns and y counts rows from the corner of the first pixel, as in an
+    image, with y down. Where the first row is the top and y is to point up, pass ``mask[::-1]``.
+    a is not shorter than b.
+
+    The arrays of pygame's ``surfarray`` count columns first: for those pass the transpose, as
+    in ``ellipse_from_mask(pygame.surfarray.array_alpha(surface).T)``.
 
     Raises TypeError or ValueError for a mask that is not two-dimensional, has entries that are
     negative or not finite, or is empty.
@@ -107,11 +114,11 @@ def ellipse_from_mask(mask: ArrayLike) -> EllipseParameters:
     >>> round(a / b, 3), offset, angle
     (3.0, Vec2d(1.5, 1.5), 0.0)
     """
-    weights = _floats("mask", mask)
+    weights, _scale = _scaled(_floats("mask", _rows_of_mask(mask)))
     if weights.ndim != 2:
         raise ValueError(f"mask must have two dimensions, got {weights.ndim}")
     if np.any(weights < 0.0):
-        raise ValueError(f"mask must not be negative, got {weights.min()!s}")
+        raise ValueError(f"mask must not be negative, got {weights.min() * _scale!s}")
     total = float(weights.sum())
     if not total > 0.0:
         raise ValueError("mask must have a pixel that is not zero")
@@ -132,7 +139,19 @@ def ellipse_from_mask(mask: ArrayLike) -> EllipseParameters:
         float(columns @ (x * x)) + square,
         float(y @ weights @ x) / total,
         float(rows @ (y * y)) + square,
+        1.0,
     )
+
+
+def _rows_of_mask(mask: Any) -> Any:
+    """The pixels of a pygame.Mask in rows, and anything else as it is.
+
+    numpy would read the packed bits of a Mask as numbers. pygame is not imported for this.
+    """
+    if not (hasattr(mask, "get_at") and hasattr(mask, "get_size")):
+        return mask
+    width, height = mask.get_size()
+    return [[mask.get_at((x, y)) for x in range(width)] for y in range(height)]
 
 
 def ellipse_from_bb(bb: pymunk.BB) -> EllipseParameters:
@@ -149,20 +168,38 @@ def ellipse_from_bb(bb: pymunk.BB) -> EllipseParameters:
     )
     if not (left < right and bottom < top):
         raise ValueError(f"bb must have an extent in x and y, got {bb!r}")
-    a, b = (right - left) / 2.0, (top - bottom) / 2.0
-    return EllipseParameters(a, b, Vec2d(left + a, bottom + b), 0.0)
+    # Halves first, for the width of a box may be too large for a float.
+    a, b = right / 2.0 - left / 2.0, top / 2.0 - bottom / 2.0
+    return _parameters(
+        "bb", a, b, left / 2.0 + right / 2.0, bottom / 2.0 + top / 2.0, 0.0
+    )
 
 
 def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """value as an array of finite floats."""
+    if value is None or isinstance(value, (Set, Mapping)) or _checks.is_masked(value):
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
     try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+        array = np.asarray(value)
+        # Numbers of several types, or Python's own.
+        if array.dtype.kind == "O" and all(map(_checks.is_real, array.flat)):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
         raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
+    if array.dtype.kind not in _checks.REAL_KINDS:
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
+    array = array.astype(np.float64)
     if not np.all(np.isfinite(array)):
         wrong = array[~np.isfinite(array)][0]
         raise ValueError(f"{name} must be finite, got {wrong!s}")
     return array
+
+
+def _scaled(array: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """The array divided by a power of two near its largest number, and that: squares neither over- nor underflow."""
+    largest = float(np.max(np.abs(array), initial=0.0))
+    scale = 2.0 ** (frexp(largest)[1] - 1) if largest > 0.0 else 1.0
+    return array / scale, scale
 
 
 def _rows_of_two(name: str, value: ArrayLike) -> NDArray[np.float64]:
@@ -173,9 +210,9 @@ def _rows_of_two(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 
 def _ellipse(
-    name: str, x: float, y: float, xx: float, xy: float, yy: float
+    name: str, x: float, y: float, xx: float, xy: float, yy: float, scale: float
 ) -> EllipseParameters:
-    """The ellipse with this centre and these second moments per area about it."""
+    """The ellipse with this centre and these second moments per area about it, enlarged by scale."""
     middle = (xx + yy) / 2.0
     half_difference = hypot((xx - yy) / 2.0, xy)
     longest = middle + half_difference
@@ -187,6 +224,17 @@ def _ellipse(
     # Equal but for roundoff: no direction is that of the longer axis.
     isotropic = half_difference <= 1e-12 * middle
     angle = 0.0 if isotropic else atan2(2.0 * xy, xx - yy) / 2.0
-    return EllipseParameters(
-        2.0 * sqrt(longest), 2.0 * sqrt(shortest), Vec2d(x, y), angle
-    )
+    a, b = 2.0 * sqrt(longest) * scale, 2.0 * sqrt(shortest) * scale
+    return _parameters(name, a, b, x * scale, y * scale, angle)
+
+
+def _parameters(
+    name: str, a: float, b: float, x: float, y: float, angle: float
+) -> EllipseParameters:
+    """Parameters that an Ellipse takes, or an error that names the argument they come from."""
+    try:
+        _checks.semi_axes(a, b)
+        offset = _checks.offset((x, y), a, b)
+    except ValueError as error:
+        raise ValueError(f"{name} must give an ellipse that can be: {error}") from error
+    return EllipseParameters(a, b, offset, angle)

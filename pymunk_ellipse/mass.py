@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import isfinite, pi
 
 from . import _checks
 
@@ -39,4 +39,9 @@ def moment_for_ellipse(
     a, b = _checks.semi_axes(a, b)
     center = _checks.point("offset", offset)
     distance_squared = center.x * center.x + center.y * center.y
-    return mass * ((a * a + b * b) / 4.0 + distance_squared)
+    moment = mass * ((a * a + b * b) / 4.0 + distance_squared)
+    if not isfinite(moment):
+        raise ValueError(
+            f"offset and mass must give a finite moment, got offset={offset!r}, mass={mass!r}"
+        )
+    return moment

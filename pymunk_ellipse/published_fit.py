@@ -7,7 +7,7 @@ the method it grew from, to compare with.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, copysign, cos, hypot, pi, sin
+from math import asin, copysign, cos, hypot, isfinite, pi, sin
 from operator import index
 from typing import Any, NamedTuple
 
@@ -78,7 +78,7 @@ def circle_fit(
 
     Raises TypeError for an ellipse that is not four or five numbers and for a number of sweeps
     that is not an integer, and ValueError for numbers that are not finite, for semi-axes that
-    no Ellipse can have, and for less than one sweep.
+    no Ellipse can have, for centres whose distance is not finite, and for less than one sweep.
 
     The published example:
 
@@ -94,6 +94,10 @@ def circle_fit(
     # From the first centre on, so that far from the origin nothing drowns in its coordinates.
     one = one._replace(x=0.0, y=0.0)
     two = two._replace(x=two.x - origin_x, y=two.y - origin_y)
+    if not isfinite(hypot(two.x, two.y)):
+        raise ValueError(
+            f"second must not be infinitely far from first, got {second!r} and {first!r}"
+        )
     try:
         sweeps_left = index(sweeps)
     except TypeError as error:

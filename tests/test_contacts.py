@@ -44,12 +44,12 @@ def circle_or_ellipse(round_as_ellipse):
 
 
 def scene_floor(space, make):
-    """Thrown on a floor and against a wall, with friction and bounce."""
+    """Thrown on a floor and against a wall, with friction and bounce; never so far that it just touches, which counts here and not for circles."""
     add_floor(space, elasticity=0.7)
     wall = pymunk.Segment(space.static_body, (30, 0), (30, 100), 1)
     wall.friction = wall.elasticity = 0.8
     space.add(wall)
-    body = add_body(space, (0, 12), 0.3, (60, 5), -3, 2, 30)
+    body = add_body(space, (0.1, 12), 0.3, (60, 5), -3, 2, 30)
     yield body, make(body, 5)
 
 
@@ -1016,11 +1016,6 @@ def test_joined_segments_are_one_floor(length):
     assert largest_difference(one, roll(joints, neighbors=False)) > 0.1
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="on its first step over a segment an ellipse has no last contact there, "
-    "and goes without the correction of rolling_velocity",
-)
 def test_joined_segments_are_one_floor_to_roundoff():
     joints = [-200 + 40 * i for i in range(20)]
     assert largest_difference(roll(None), roll(joints)) < 1e-6

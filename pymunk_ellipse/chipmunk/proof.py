@@ -23,6 +23,7 @@ from .structs import (
     polygon_at,
     segment_at,
     shape_at,
+    space_at,
 )
 
 # The versions that the tests pass on.
@@ -73,6 +74,7 @@ def findings() -> Iterator[Finding]:
     yield from _circle()
     yield from _segment()
     yield from _polygon()
+    yield from _space()
 
 
 def _pair(vector: Any) -> tuple[float, float]:
@@ -215,3 +217,24 @@ def _polygon() -> Iterator[Finding]:
     found = polygon_at(many._shape)
     outside = address(found.planes) != address(found.inline_planes)
     yield "how many planes are inline in a polygon", outside, True
+
+
+def _space() -> Iterator[Finding]:
+    space = pymunk.Space()
+    space.iterations = 13
+    space.gravity = 1.5, -2.5
+    space.damping = 0.625
+    space.collision_slop = 0.375
+    space.collision_bias = 0.25
+    space.collision_persistence = 5
+    for _ in range(3):
+        space.step(0.125)
+    found = space_at(space._space)
+    yield "a space's iterations", found.iterations, 13
+    yield "a space's gravity", _pair(found.gravity), (1.5, -2.5)
+    yield "a space's damping", (found.damping,), (0.625,)
+    yield "a space's collision slop", (found.collisionSlop,), (0.375,)
+    yield "a space's collision bias", (found.collisionBias,), (0.25,)
+    yield "a space's collision persistence", found.collisionPersistence, 5
+    yield "a space's stamp", found.stamp, 3
+    yield "a space's time step", (found.curr_dt,), (0.125,)

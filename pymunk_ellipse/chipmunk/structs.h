@@ -78,6 +78,8 @@ typedef struct {
     double *planes;
     double local[6];
     double world[6];
+    /* The last contacts with other shapes, four numbers each; see contacts/handover.py. */
+    intptr_t touches[16];
 } Hull;
 
 typedef struct {
@@ -97,6 +99,16 @@ typedef struct {
     int state;
     unsigned char processCollision;
 } Arbiter;
+
+typedef struct {
+    int iterations;
+    Vect gravity;
+    double damping, idleSpeedThreshold, sleepTimeThreshold, collisionSlop, collisionBias;
+    unsigned int collisionPersistence;
+    intptr_t userData;
+    unsigned int stamp;
+    double curr_dt;
+} Space;
 
 typedef struct { intptr_t shape; Vect point; double distance; Vect gradient; } PointQueryInfo;
 typedef struct { intptr_t shape; Vect point, normal; double alpha; } SegmentQueryInfo;

@@ -39,6 +39,8 @@ def _at(kind: str) -> Callable[[Any], Any]:
 
 
 arbiter_at = _at("Arbiter")
+contact_at = _at("Contact")
+space_at = _at("Space")
 body_at = _at("Body")
 shape_at = _at("Shape")
 circle_at = _at("Circle")

@@ -29,10 +29,10 @@ class Python:
     name = "python"
 
     def __init__(self) -> None:
-        def resolve(arbiter: int, space: Any, data: Any) -> None:
-            pre_solve(arbiter)
+        def resolve(arbiter: int, space: int, data: Any) -> None:
+            pre_solve(arbiter, space)
 
-        call = ffi.callback("void(intptr_t, void *, void *)", resolve)
+        call = ffi.callback("void(intptr_t, intptr_t, void *)", resolve)
         keep_for_ever(call)
         self.pre_solve = pre_solve_function(address(call))
 

@@ -142,7 +142,7 @@ class ContactHandler(ChainedHandler):
         """Write the exact contact into a C arbiter, if it has an ellipse."""
         if self.adopts:
             self.adopt(arbiter)
-        kernel().pre_solve(arbiter, NULL, NULL)
+        kernel().pre_solve(arbiter, self._space._space, NULL)
 
     def adopt(self, current: Any) -> None:
         """Take over the contacts of the space that this one is a copy of, when the first of them is at hand."""

@@ -20,6 +20,7 @@ from .pair import ShapeContact
 SOURCES = (
     "chipmunk/structs.h",
     "chipmunk/shape_class.py",
+    "contacts/handover.py",
     "contacts/pair.py",
     "contacts/resolver.py",
     "narrowphase",

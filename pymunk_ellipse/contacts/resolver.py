@@ -11,18 +11,21 @@ from ..chipmunk.structs import (
     ellipse_class,
     frame_in,
     hull_at,
+    space_at,
 )
 from ..narrowphase.ellipse_ellipse import ellipse_ellipse
 from ..narrowphase.frame import normal_at
 from ..narrowphase.rolling import rolling_velocity, same_contact
+from .handover import last_on_body, remember
 from .pair import contact_with
 
 
-def pre_solve(address: int) -> None:
+def pre_solve(address: int, space_address: int) -> None:
     """Replace the contact of two hulls by that of the shapes they stand for.
 
-    address is that of a cpArbiter that Chipmunk is about to solve. Its data points to the
-    contact of the last step, or is zero if the two did not touch in it.
+    The addresses are those of a cpArbiter that Chipmunk is about to solve, and of its cpSpace.
+    The arbiter's data points to the contact of the last step, or is zero if the two did not
+    touch in it.
     """
     arbiter = arbiter_at(address)
     shape_a = arbiter.shape_a
@@ -97,6 +100,19 @@ def pre_solve(address: int) -> None:
     # A circle's contact stays where it is; without this it would differ from pymunk.Circle's in
     # what little it moves at a corner.
     rolls = lasts and not round_shapes and same_contact(nx, ny, start_x, start_y)
+    if not (a_is_ellipse and b_is_ellipse):
+        step = space_at(space_address).stamp
+        hull = hull_at(shape_a if a_is_ellipse else shape_b)
+        touched = shape_b.on_body if a_is_ellipse else shape_a.on_body
+        if not lasts and not round_shapes:
+            gx = ax if a_is_ellipse else bx
+            gy = ay if a_is_ellipse else by
+            rolls, ex, ey, ox, oy = last_on_body(
+                hull, ellipse, touched, step, gx, gy, nx, ny
+            )
+            last_ax, last_ay = (ex, ey) if a_is_ellipse else (ox, oy)
+            last_bx, last_by = (ox, oy) if a_is_ellipse else (ex, ey)
+        remember(hull, arbiter.contacts, name, touched, step, a_is_ellipse)
     x = ellipse[4] + px
     y = ellipse[5] + py
     other_x = x + distance * nx

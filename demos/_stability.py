@@ -579,7 +579,7 @@ def off_path(
     return float(np.max(np.abs(path - expected))) / way
 
 
-@scene("joined segments", "off the path on one segment / way", 0.005)
+@scene("joined segments", "off the path on one segment / way", 1e-6)
 def over_joined_segments(make: Make, dt: float) -> float:
     """On 200 segments in a row, each half as long as the ellipse's semi-axis, it rolls as on one."""
     length = ROLLING[0] / 2.0

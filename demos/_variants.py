@@ -13,7 +13,7 @@ import pymunk_ellipse.contacts.resolver as resolver
 import pymunk_ellipse.narrowphase.ellipse_ellipse as ellipse_ellipse
 import pymunk_ellipse.narrowphase.ellipse_polygon as ellipse_polygon
 from pymunk_ellipse.chipmunk.structs import arbiter_at
-from pymunk_ellipse.narrowphase.common_normal import Maximum
+from pymunk_ellipse.contacts.handover import LastContact
 from pymunk_ellipse.narrowphase.ellipse_ellipse import Contact
 from pymunk_ellipse.narrowphase.frame import Frame
 from pymunk_ellipse.published_fit import circle_fit
@@ -60,14 +60,30 @@ def without_rolling() -> Iterator[None]:
 
 
 @contextmanager
+def without_handover() -> Iterator[None]:
+    """Each contact with another shape of a floor begins without a last one."""
+
+    def last_on_body(*arguments: Any) -> LastContact:
+        return False, 0.0, 0.0, 0.0, 0.0
+
+    with replaced((resolver, "last_on_body", last_on_body)):
+        yield
+
+
+@contextmanager
 def without_sweep() -> Iterator[None]:
     """The first maximum that the climb finds counts, however deep the overlap."""
 
-    def sweep(*arguments: Any) -> Maximum:
-        best: Maximum = arguments[-1]
-        return best
+    def sweep(*arguments: Any) -> Any:
+        return arguments[-1]
 
-    with replaced((ellipse_ellipse, "sweep", sweep), (ellipse_polygon, "sweep", sweep)):
+    def sweep_polygon(*arguments: Any) -> Any:
+        return arguments[-2:]
+
+    with replaced(
+        (ellipse_ellipse, "sweep", sweep),
+        (ellipse_polygon, "sweep_polygon", sweep_polygon),
+    ):
         yield
 
 
@@ -104,5 +120,6 @@ VARIANTS: dict[str, Callable[[], Any]] = {
     "published fit": with_published_fit,
     "no warm start": without_warm_start,
     "no rolling correction": without_rolling,
+    "no handover": without_handover,
     "no sweep": without_sweep,
 }

@@ -78,8 +78,9 @@ typedef struct {
     double *planes;
     double local[6];
     double world[6];
-    /* The last contacts with other shapes, four numbers each; see contacts/handover.py. */
+    /* The last contacts with other shapes, four words each and a normal; see contacts/handover.py. */
     intptr_t touches[16];
+    double normals[8];
 } Hull;
 
 typedef struct {

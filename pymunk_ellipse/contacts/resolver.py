@@ -16,7 +16,7 @@ from ..chipmunk.structs import (
 from ..narrowphase.ellipse_ellipse import ellipse_ellipse
 from ..narrowphase.frame import normal_at
 from ..narrowphase.rolling import rolling_velocity, same_contact
-from .handover import last_on_body, remember
+from .handover import keep_contact, last_on_body
 from .pair import contact_with
 
 
@@ -103,16 +103,16 @@ def pre_solve(address: int, space_address: int) -> None:
     if not (a_is_ellipse and b_is_ellipse):
         step = space_at(space_address).stamp
         hull = hull_at(shape_a if a_is_ellipse else shape_b)
-        touched = shape_b.on_body if a_is_ellipse else shape_a.on_body
+        body = body_b if a_is_ellipse else body_a
+        on_body = shape_b.on_body if a_is_ellipse else shape_a.on_body
+        at = body.transform
+        mx = at.a * nx + at.b * ny
+        my = at.a * ny - at.b * nx
         if not lasts and not round_shapes:
-            gx = ax if a_is_ellipse else bx
-            gy = ay if a_is_ellipse else by
-            rolls, ex, ey, ox, oy = last_on_body(
-                hull, ellipse, touched, step, gx, gy, nx, ny
-            )
+            rolls, ex, ey, ox, oy = last_on_body(hull, on_body, step, mx, my)
             last_ax, last_ay = (ex, ey) if a_is_ellipse else (ox, oy)
             last_bx, last_by = (ox, oy) if a_is_ellipse else (ex, ey)
-        remember(hull, arbiter.contacts, name, touched, step, a_is_ellipse)
+        keep_contact(hull, arbiter.contacts, name, on_body, step, a_is_ellipse, mx, my)
     x = ellipse[4] + px
     y = ellipse[5] + py
     other_x = x + distance * nx

@@ -30,6 +30,7 @@ from pymunk_ellipse.narrowphase import (
     frame,
     nearest,
     rolling,
+    rows,
 )
 
 _COMPILED = (
@@ -40,6 +41,7 @@ _COMPILED = (
     frame,
     nearest,
     rolling,
+    rows,
     shape_class,
     pair,
     handover,
@@ -72,6 +74,8 @@ def module() -> Any:
     llvm.add_symbol(CLASS_SYMBOL, addressof(somewhere))
 
     number = types.float64
+    word = types.int64
+    numbers = types.CPointer(number)
     hull = struct("Hull")
     entries: tuple[tuple[Any, tuple[Any, ...]], ...] = (
         (resolver.pre_solve, (types.int64, types.int64)),
@@ -81,6 +85,8 @@ def module() -> Any:
         (shape_class.nearest_now, (hull, number, number)),
         (shape_class.cast_now, (hull, *[number] * 5)),
         (pair.shape_contact, (hull, struct("Shape"))),
+        (rows.contacts_of_rows, (word, numbers, word, numbers, word, numbers)),
+        (rows.nearest_of_rows, (word, numbers, word, numbers, word, numbers)),
     )
     whole = llvm.parse_assembly("")
     for function, arguments in entries:

@@ -23,6 +23,8 @@ int pe_native_cast_updated(double *, void **, void *, double, double, double, do
 int pe_native_nearest_now(double *, void **, void *, double, double);
 int pe_native_cast_now(double *, void **, void *, double, double, double, double, double);
 int pe_native_shape_contact(double *, void **, void *, void *);
+int pe_native_contacts_of_rows(void *, void **, int64_t, const double *, int64_t, const double *, int64_t, double *);
+int pe_native_nearest_of_rows(void *, void **, int64_t, const double *, int64_t, const double *, int64_t, double *);
 
 INTERNAL ShapeClass pe_ellipse_class;
 static ShapeClass polygons;
@@ -88,6 +90,18 @@ EXPORTED void pe_cast_now(void *ellipse, double start_x, double start_y, double 
                           double radius, double *result) {
     void *exception = 0;
     pe_native_cast_now(result, &exception, ellipse, start_x, start_y, end_x, end_y, radius);
+}
+
+EXPORTED void pe_contacts_of_rows(int64_t count, const double *first, int64_t first_step, const double *second,
+                                  int64_t second_step, double *result) {
+    void *nothing = 0, *exception = 0;
+    pe_native_contacts_of_rows(&nothing, &exception, count, first, first_step, second, second_step, result);
+}
+
+EXPORTED void pe_nearest_of_rows(int64_t count, const double *ellipses, int64_t ellipse_step, const double *points,
+                                 int64_t point_step, double *result) {
+    void *nothing = 0, *exception = 0;
+    pe_native_nearest_of_rows(&nothing, &exception, count, ellipses, ellipse_step, points, point_step, result);
 }
 
 EXPORTED const char *pe_digest(void) { return DIGEST; }

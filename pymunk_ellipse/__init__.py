@@ -1,5 +1,6 @@
 """Exact ellipses for pymunk."""
 
+from .arrays import EllipseContacts, NearestPoints, ellipse_contacts, nearest_points
 from .contacts.backend import backend
 from .ellipse import Ellipse, ShapeDistance
 from .mass import area_for_ellipse, moment_for_ellipse
@@ -8,10 +9,14 @@ from .space import Space
 
 __all__ = [
     "Ellipse",
+    "EllipseContacts",
+    "NearestPoints",
     "ShapeDistance",
     "Space",
     "area_for_ellipse",
     "backend",
     "circle_fit",
+    "ellipse_contacts",
     "moment_for_ellipse",
+    "nearest_points",
 ]

@@ -6,9 +6,13 @@ from collections.abc import Mapping, Set
 from decimal import Decimal
 from math import isfinite, isnan
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pymunk import BB, Vec2d
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 # Chipmunk multiplies up to four lengths for a moment; beyond these bounds that over- or underflows.
 SMALLEST_SEMI_AXIS = 1e-50
@@ -106,6 +110,32 @@ def box(name: str, value: Any) -> BB:
         number_or_infinity(f"{name}.right", right),
         number_or_infinity(f"{name}.top", top),
     )
+
+
+def floats(name: str, value: Any) -> NDArray[np.float64]:
+    """value as an array of finite floats.
+
+    Raises TypeError for what is no array of real numbers, and ValueError for numbers that are
+    not finite.
+    """
+    import numpy as np
+
+    if value is None or isinstance(value, (Set, Mapping)) or is_masked(value):
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
+    try:
+        array = np.asarray(value)
+        # Numbers of several types, or Python's own.
+        if array.dtype.kind == "O" and all(map(is_real, array.flat)):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
+    if array.dtype.kind not in REAL_KINDS:
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
+    array = array.astype(np.float64, copy=False)
+    if not np.all(np.isfinite(array)):
+        wrong = array[~np.isfinite(array)][0]
+        raise ValueError(f"{name} must be finite, got {wrong!s}")
+    return array
 
 
 def semi_axes(a: Any, b: Any) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from math import cos, isclose, pi, sin
+from math import isclose, pi
 from typing import Any, ClassVar, NamedTuple, NoReturn
 
 import pymunk
@@ -23,7 +23,7 @@ from .chipmunk.structs import INLINE_VERTICES, ellipse_class, hull_at, shape_at
 from .contacts import handler
 from .contacts.backend import kernel
 from .contacts.pair import ShapeContact
-from .narrowphase.frame import Frame, half_extents
+from .narrowphase.frame import Frame, frame_of, half_extents
 
 
 class ShapeDistance(NamedTuple):
@@ -125,15 +125,7 @@ class Ellipse(pymunk.Poly):
         self._a, self._b = _checks.semi_axes(a, b)
         self._offset = _checks.offset(offset, self._a, self._b)
         self._angle = _checks.number("angle", angle)
-        longer = self._angle if self._a >= self._b else self._angle + pi / 2.0
-        self._frame: Frame = (
-            max(self._a, self._b),
-            min(self._a, self._b),
-            cos(longer),
-            sin(longer),
-            self._offset.x,
-            self._offset.y,
-        )
+        self._frame: Frame = frame_of(self._a, self._b, *self._offset, self._angle)
 
     @property
     def a(self) -> float:

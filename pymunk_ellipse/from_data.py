@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
 from math import atan2, frexp, hypot, sqrt
 from typing import Any, NamedTuple
 
@@ -114,7 +113,7 @@ def ellipse_from_mask(mask: Any) -> EllipseParameters:
     >>> round(a / b, 3), offset, angle
     (3.0, Vec2d(1.5, 1.5), 0.0)
     """
-    weights, _scale = _scaled(_floats("mask", _rows_of_mask(mask)))
+    weights, _scale = _scaled(_checks.floats("mask", _rows_of_mask(mask)))
     if weights.ndim != 2:
         raise ValueError(f"mask must have two dimensions, got {weights.ndim}")
     if np.any(weights < 0.0):
@@ -175,26 +174,6 @@ def ellipse_from_bb(bb: pymunk.BB) -> EllipseParameters:
     )
 
 
-def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """value as an array of finite floats."""
-    if value is None or isinstance(value, (Set, Mapping)) or _checks.is_masked(value):
-        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
-    try:
-        array = np.asarray(value)
-        # Numbers of several types, or Python's own.
-        if array.dtype.kind == "O" and all(map(_checks.is_real, array.flat)):
-            array = array.astype(np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
-    if array.dtype.kind not in _checks.REAL_KINDS:
-        raise TypeError(f"{name} must be an array of numbers, got {value!r}")
-    array = array.astype(np.float64)
-    if not np.all(np.isfinite(array)):
-        wrong = array[~np.isfinite(array)][0]
-        raise ValueError(f"{name} must be finite, got {wrong!s}")
-    return array
-
-
 def _scaled(array: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     """The array divided by a power of two near its largest number, and that: squares neither over- nor underflow."""
     largest = float(np.max(np.abs(array), initial=0.0))
@@ -203,7 +182,7 @@ def _scaled(array: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
 
 
 def _rows_of_two(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    array = _floats(name, value)
+    array = _checks.floats(name, value)
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"{name} must be rows of x and y, got shape {array.shape}")
     return array

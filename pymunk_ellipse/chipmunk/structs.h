@@ -121,4 +121,6 @@ void *pe_shape_class(const void *of_polygons);
 void pe_shape_contact(void *ellipse, void *shape, double *result);
 void pe_nearest_now(void *ellipse, double x, double y, double *result);
 void pe_cast_now(void *ellipse, double start_x, double start_y, double end_x, double end_y, double radius, double *result);
+void pe_contacts_of_rows(int64_t count, const double *first, int64_t first_step, const double *second, int64_t second_step, double *result);
+void pe_nearest_of_rows(int64_t count, const double *ellipses, int64_t ellipse_step, const double *points, int64_t point_step, double *result);
 const char *pe_digest(void);

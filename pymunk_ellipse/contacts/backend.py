@@ -16,6 +16,7 @@ from ..chipmunk.shape_class import cast_now, keep_for_ever, nearest_now, python_
 from ..chipmunk.structs import address, ffi, hull_at, set_ellipse_class, shape_at
 from ..narrowphase.cast import Hit
 from ..narrowphase.nearest import Nearest
+from ..narrowphase.rows import contacts_of_rows, nearest_of_rows
 from .library import Library, Unusable, load
 from .pair import ShapeContact, shape_contact
 from .resolver import pre_solve
@@ -59,6 +60,44 @@ class Python:
     ) -> Hit:
         """See chipmunk.shape_class."""
         return cast_now(hull_at(ellipse), start_x, start_y, end_x, end_y, radius)
+
+    def contacts_of_rows(
+        self, first: Any, first_step: int, second: Any, second_step: int, result: Any
+    ) -> None:
+        """See narrowphase.rows; the arguments are arrays of numpy's, one row of the result for each pair."""
+        _in_lists(contacts_of_rows, first, first_step, second, second_step, result)
+
+    def nearest_of_rows(
+        self,
+        ellipses: Any,
+        ellipse_step: int,
+        points: Any,
+        point_step: int,
+        result: Any,
+    ) -> None:
+        """See narrowphase.rows; the arguments are arrays of numpy's, one row of the result for each pair."""
+        _in_lists(nearest_of_rows, ellipses, ellipse_step, points, point_step, result)
+
+
+def _in_lists(
+    function: Any,
+    first: Any,
+    first_step: int,
+    second: Any,
+    second_step: int,
+    result: Any,
+) -> None:
+    """Call a function of rows with lists, whose numbers are Python's own and several times as fast as numpy's."""
+    numbers = result.ravel().tolist()
+    function(
+        len(result),
+        first.ravel().tolist(),
+        first_step,
+        second.ravel().tolist(),
+        second_step,
+        numbers,
+    )
+    result.ravel()[:] = numbers
 
 
 Kernel = Library | Python

@@ -102,6 +102,42 @@ class Library:
         hit: Hit = tuple(ffi.unpack(result, 5))
         return hit
 
+    def contacts_of_rows(
+        self, first: Any, first_step: int, second: Any, second_step: int, result: Any
+    ) -> None:
+        """See narrowphase.rows; the arguments are arrays of numpy's, one row of the result for each pair."""
+        self._lib.pe_contacts_of_rows(
+            len(result),
+            _doubles(first),
+            first_step,
+            _doubles(second),
+            second_step,
+            _doubles(result),
+        )
+
+    def nearest_of_rows(
+        self,
+        ellipses: Any,
+        ellipse_step: int,
+        points: Any,
+        point_step: int,
+        result: Any,
+    ) -> None:
+        """See narrowphase.rows; the arguments are arrays of numpy's, one row of the result for each pair."""
+        self._lib.pe_nearest_of_rows(
+            len(result),
+            _doubles(ellipses),
+            ellipse_step,
+            _doubles(points),
+            point_step,
+            _doubles(result),
+        )
+
+
+def _doubles(array: Any) -> Any:
+    """A pointer to the numbers of one of numpy's arrays."""
+    return ffi.from_buffer("double[]", array)
+
 
 class Unusable(Exception):
     """Why a library that is there cannot be used."""

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import cos, sin, sqrt
 
 # Semi-axes (the longer first), the unit vector along the longer one (x, y) and the centre (x, y).
 Frame = tuple[float, float, float, float, float, float]
+
+
+def frame_of(a: float, b: float, x: float, y: float, angle: float) -> Frame:
+    """The frame of an ellipse with a at an angle (radians) and its centre at (x, y); either semi-axis may be the longer.
+
+    >>> frame_of(1.0, 2.0, 5.0, 6.0, 0.0)
+    (2.0, 1.0, -0.0, 1.0, 5.0, 6.0)
+    """
+    c = cos(angle)
+    s = sin(angle)
+    if a >= b:
+        return a, b, c, s, x, y
+    return b, a, -s, c, x, y
 
 
 def placed(frame: Frame, x: float, y: float, cos: float, sin: float) -> Frame:

@@ -9,12 +9,12 @@ from test_narrowphase import KINDS, random_pair
 
 from pymunk_ellipse import Ellipse
 from pymunk_ellipse.chipmunk.private import c_points
-from pymunk_ellipse.hull import VERTICES, stretch, unit_polygon
+from pymunk_ellipse.hull import ROUNDING, VERTICES, stretch, unit_polygon
 
 DIRECTIONS = np.linspace(0, 2 * pi, 5000, endpoint=False)
 
 
-def rounded_hull(a, b, angle, x, y, count=VERTICES, rounding=0.2):
+def rounded_hull(a, b, angle, x, y, count=VERTICES, rounding=ROUNDING):
     """Vertices and radius of the hull of an ellipse with a at this angle and its centre at (x, y)."""
     shape = Ellipse(None, a, b, (x, y), angle)
     (m, n, p, q, tx, ty), radius = stretch(shape._frame, rounding)

@@ -18,7 +18,7 @@ from pairs import (
     from_reference,
 )
 
-from pymunk_ellipse.narrowphase.ellipse_polygon import UNTOUCHED, ellipse_segment
+from pymunk_ellipse.narrowphase.ellipse_polygon import ellipse_segment
 
 REFERENCES = json.loads((Path(__file__).parent / "contacts.json").read_text())["cases"]
 
@@ -505,12 +505,31 @@ def test_segment_neighbour_takes_over_past_the_end():
     assert before[:3] == pytest.approx(found[:3])
 
 
-def test_segment_end_is_untouched_from_over_its_neighbour():
-    """Neither the end nor, past the neighbour's other end, its face: that is for the neighbour's own contact."""
-    ellipse = Placed(1, 0.5, 2.05, 0.0)
-    assert chained(ellipse).distance == pytest.approx(0.05)
-    assert chained(ellipse, after=(0.1, 0.0)).distance == UNTOUCHED
-    assert chained(ellipse, before=(-0.1, 0.0)).distance == pytest.approx(0.05)
+def test_past_short_neighbours_the_line_of_the_chain_counts():
+    """The ellipse lies on a floor of short segments, and only the first of them is reported."""
+    for length in (2.0, 0.4, 0.1, 0.01):
+        found = chained(Placed(2, 0.5, 1.5, 0.45), after=(length, 0.0))
+        assert found.distance == pytest.approx(-0.05)
+        assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
+        assert found.x == pytest.approx(0, abs=1e-9)
+
+
+def test_where_the_neighbour_rises_the_segments_own_line_counts():
+    """In a hollow, in the way of both segments: each holds by its own line, whatever is reported."""
+    ellipse = Placed(2, 0.5, 1.2, 0.45)
+    found = chained(ellipse, after=(1.0, 1.0))
+    assert found.distance == pytest.approx(-0.05)
+    assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
+    # Apart from it the neighbour is what is near.
+    apart = chained(Placed(0.5, 0.25, 1.6, 0.75), after=(1.0, 1.0))
+    direct = chained_line(Placed(0.5, 0.25, 1.6, 0.75), (1, 0), (2, 1))
+    assert apart[:3] == pytest.approx(direct[:3])
+
+
+def chained_line(ellipse, start, end):
+    """The contact with a segment that has no neighbours."""
+    zero = (0.0, 0.0)
+    return Found(*ellipse_segment(frame(ellipse), start, end, zero, zero, 0.0))
 
 
 def test_neighbour_that_leads_away_is_touched_by_its_face():

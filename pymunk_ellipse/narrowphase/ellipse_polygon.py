@@ -20,8 +20,9 @@ Vector = tuple[float, float]
 
 FACE = -1
 
-# The distance to a segment whose touched end does not count.
-UNTOUCHED = 1.0 / TINY
+# The normal at a joint may be aside by this part of the way to the neighbour's end and still count, so
+# that roundoff does not have both segments leave the contact to the other.
+JOINT_TOLERANCE = 1e-9
 
 
 def ellipse_polygon(
@@ -180,27 +181,52 @@ def ellipse_segment(
 
     before and after lead from the segment's start and end to the other ends of its neighbours,
     and are zero where it has none. An end that the ellipse touches from over its neighbour does
-    not count (Chipmunk's rule for circles); the neighbour itself is then taken, because
-    Chipmunk decides by the hull which segment of a chain is touched, and the hull's nearest
-    point may lie over one and the ellipse's over the next. Where the neighbour is not touched
-    either, the distance is UNTOUCHED.
+    not count (Chipmunk's rule for circles). But Chipmunk decides by the hull which segment of a
+    chain it reports, and may report this one alone while the ellipse stands on another. So
+    where an end does not count, what the chain does there is taken instead: the segment's own
+    line, if the neighbour rises on the ellipse's side of it; else the neighbour, or its line
+    where the chain is so dense that the neighbour's far end would be touched.
 
     For the rest see ellipse_ellipse.
     """
     contact, joint = line_contact(ellipse, start, end, radius)
-    _distance, nx, ny, _px, _py = contact
-    if joint == 0 and nx * before[0] + ny * before[1] < 0.0:
-        end = (start[0] + before[0], start[1] + before[1])
-    elif joint == 1 and nx * after[0] + ny * after[1] < 0.0:
-        start = (end[0] + after[0], end[1] + after[1])
-    else:
+    if joint == FACE:
+        return contact
+    tx, ty = before if joint == 0 else after
+    least = JOINT_TOLERANCE * (abs(tx) + abs(ty))
+    distance, nx, ny, _px, _py = contact
+    if nx * tx + ny * ty >= -least:
         return contact
 
-    contact, feature = line_contact(ellipse, start, end, radius)
-    # Where two of a chain meet, roundoff may let each leave the contact to the other.
-    if feature != FACE and feature != joint:
-        _distance, nx, ny, px, py = contact
-        return UNTOUCHED, nx, ny, px, py
+    mx, my = normal_to_line(ellipse, start, (end[0] - start[0], end[1] - start[1]))
+    if distance <= 0.0 and mx * tx + my * ty < -least:
+        return face_contact(ellipse, start, radius, mx, my)
+    corner = start if joint == 0 else end
+    far = (corner[0] + tx, corner[1] + ty)
+    contact, feature = line_contact(ellipse, corner, far, radius)
+    if feature == 1:
+        mx, my = normal_to_line(ellipse, corner, (tx, ty))
+        return face_contact(ellipse, corner, radius, mx, my)
+    return contact
+
+
+def normal_to_line(ellipse: Frame, start: Vector, along: Vector) -> Vector:
+    """The unit normal from an ellipse's centre to the line through a point in a direction of any length."""
+    tx, ty = along
+    length = sqrt(tx * tx + ty * ty) + TINY
+    nx = ty / length
+    ny = -tx / length
+    if (start[0] - ellipse[4]) * nx + (start[1] - ellipse[5]) * ny < 0.0:
+        return -nx, -ny
+    return nx, ny
+
+
+def face_contact(
+    ellipse: Frame, point: Vector, radius: float, nx: float, ny: float
+) -> Contact:
+    """The contact with the plane through a point that has the unit normal n, from the ellipse to it."""
+    planes = (point[0], point[1])
+    contact, _slope = along_normal(ellipse, planes, 0, radius, nx, ny)
     return contact
 
 

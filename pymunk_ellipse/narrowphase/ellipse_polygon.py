@@ -20,6 +20,9 @@ Vector = tuple[float, float]
 
 FACE = -1
 
+# Bound on a loop; so often a half turn can be halved.
+MAX_HALVINGS = 60
+
 # The distance to a segment whose touched end does not count.
 UNTOUCHED = 1.0 / TINY
 
@@ -93,45 +96,64 @@ def climb_polygon(
     nx: float,
     ny: float,
 ) -> tuple[Contact, int]:
-    """Turn n uphill to a maximum of f, which belongs to the vertex that is nearest along n, whichever that is.
+    """Turn n uphill to a maximum of f, around one vertex of the polygon's convex hull after the other.
 
-    Vertices count by where they are alone, so that any number of them may lie on one edge, up
-    to roundoff.
+    Only the places of the vertices count here, so that any number of them may lie on one edge
+    or on one another, up to roundoff.
     """
     i = nearest_vertex(ellipse, planes, count, nx, ny)
-    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
-    if is_nearest(ellipse, planes, count, i, contact):
-        return contact, i
-
-    # On the way another vertex came nearer. f rises for one and falls for the other along the
-    # normal to both, if that is where the maximum is and nothing else is nearer there.
-    _f, mx, my, _px, _py = contact
-    j = nearest_vertex(ellipse, planes, count, mx, my)
-    sense = 1.0 if nx * my >= ny * mx else -1.0
+    contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+    sense = 1.0 if slope >= 0.0 else -1.0
     for _ in range(count):
-        ex = planes[4 * j] - planes[4 * i]
-        ey = planes[4 * j + 1] - planes[4 * i + 1]
-        length = sense * sqrt(ex * ex + ey * ey)
-        nx = -ey / length
-        ny = ex / length
-        face, slope = along_normal(ellipse, planes, i, radius, nx, ny)
-        if is_nearest(ellipse, planes, count, i, face):
-            break
-        k = nearest_vertex(ellipse, planes, count, nx, ny)
-        _contact, slope = along_normal(ellipse, planes, k, radius, nx, ny)
-        if sense * slope > 0.0:
-            i = k
-        else:
-            j = k
-    if sense * slope >= 0.0:
+        touched = around_vertex(ellipse, planes, i, radius, nx, ny)
+        if is_nearest(ellipse, planes, count, i, touched):
+            return touched, i
+        # On the way another vertex came nearer. Turn to where the first one does.
+        j = next_vertex(planes, count, i, nx, ny, sense)
+        mx, my = normal_to_edge(planes, i, j, sense)
+        contact, slope = along_normal(ellipse, planes, i, radius, mx, my)
+        if sense * slope < 0.0:
+            return climb_between(ellipse, planes, count, radius, i, nx, ny, mx, my), i
+        nx = mx
+        ny = my
         i = j
-        _contact, slope = along_normal(ellipse, planes, j, radius, nx, ny)
+        _contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
         if sense * slope <= 0.0:
-            return face, FACE
-    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
-    if is_nearest(ellipse, planes, count, i, contact):
-        return contact, i
-    return face, FACE
+            break
+    return contact, FACE
+
+
+def climb_between(
+    ellipse: Frame,
+    planes: Sequence[float],
+    count: int,
+    radius: float,
+    i: int,
+    nx: float,
+    ny: float,
+    mx: float,
+    my: float,
+) -> Contact:
+    """The maximum of f for vertex i between n and m, less than half a turn apart, from which f rises to both sides' middle."""
+    contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+    sense = 1.0 if slope >= 0.0 else -1.0
+    for _ in range(MAX_HALVINGS):
+        middle_x = nx + mx - sense * (ny - my)
+        middle_y = ny + my + sense * (nx - mx)
+        length = sqrt(middle_x * middle_x + middle_y * middle_y)
+        middle_x /= length
+        middle_y /= length
+        contact = around_vertex(ellipse, planes, i, radius, middle_x, middle_y)
+        if is_nearest(ellipse, planes, count, i, contact):
+            break
+        contact, slope = along_normal(ellipse, planes, i, radius, middle_x, middle_y)
+        if sense * slope > 0.0:
+            nx = middle_x
+            ny = middle_y
+        else:
+            mx = middle_x
+            my = middle_y
+    return contact
 
 
 def sweep_polygon(
@@ -155,10 +177,7 @@ def sweep_polygon(
         contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
         f, _nx, _ny, px, py = contact
         if f > best[0] + noise:
-            better, i = climb_polygon(ellipse, planes, count, radius, nx, ny)
-            if better[0] > best[0]:
-                best = better
-                feature = i
+            best, feature = climb_polygon(ellipse, planes, count, radius, nx, ny)
         inscribed = b * b / (px * nx + py * ny) + radius
         jump = jump_past(f, slope, inscribed, best[0] + slack)
         swept += jump
@@ -238,13 +257,54 @@ def is_nearest(
     """Whether no vertex is less far along the contact's normal than vertex i, by more than roundoff."""
     a, _b, _c, _s, x, y = ellipse
     _f, nx, ny, _px, _py = contact
-    least = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
-    least -= ROUNDOFF * (a + abs(x) + abs(y))
+    dx = planes[4 * i] - x
+    dy = planes[4 * i + 1] - y
+    roundoff = ROUNDOFF * (a + abs(x) + abs(y) + abs(dx) + abs(dy))
+    least = dx * nx + dy * ny - roundoff
     nearest = True
     for k in range(count):
         far = (planes[4 * k] - x) * nx + (planes[4 * k + 1] - y) * ny
         nearest = nearest and far >= least
     return nearest
+
+
+def next_vertex(
+    planes: Sequence[float], count: int, i: int, nx: float, ny: float, sense: float
+) -> int:
+    """The vertex that comes nearest next after vertex i as n turns, counterclockwise for a sense of 1.
+
+    Gift wrapping (R. A. Jarvis, "On the identification of the convex hull of a finite set of
+    points in the plane", 1973).
+    """
+    following = i
+    soon = False
+    dx = 0.0
+    dy = 0.0
+    for k in range(count):
+        ex = planes[4 * k] - planes[4 * i]
+        ey = planes[4 * k + 1] - planes[4 * i + 1]
+        if ex == 0.0 and ey == 0.0:
+            continue
+        # Less than a quarter turn away or more, so that of two on one line with vertex i the
+        # one behind does not count.
+        sooner = sense * (ex * ny - ey * nx) > 0.0
+        if following == i or (sooner and not soon):
+            better = True
+        else:
+            better = sooner == soon and sense * (ex * dy - ey * dx) > 0.0
+        if better:
+            following, soon, dx, dy = k, sooner, ex, ey
+    return following
+
+
+def normal_to_edge(
+    planes: Sequence[float], i: int, j: int, sense: float
+) -> tuple[float, float]:
+    """The contact normal into the edge from vertex i to vertex j, which follows in the given sense of turning."""
+    ex = planes[4 * j] - planes[4 * i]
+    ey = planes[4 * j + 1] - planes[4 * i + 1]
+    length = sense * sqrt(ex * ex + ey * ey)
+    return -ey / length, ex / length
 
 
 def along_normal(

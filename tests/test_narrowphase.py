@@ -18,7 +18,7 @@ from pairs import (
     from_reference,
 )
 
-from pymunk_ellipse.narrowphase.ellipse_polygon import UNTOUCHED, ellipse_segment
+from pymunk_ellipse.narrowphase.ellipse_polygon import ellipse_segment
 
 REFERENCES = json.loads((Path(__file__).parent / "contacts.json").read_text())["cases"]
 
@@ -505,12 +505,45 @@ def test_segment_neighbour_takes_over_past_the_end():
     assert before[:3] == pytest.approx(found[:3])
 
 
-def test_segment_end_is_untouched_from_over_its_neighbour():
-    """Neither the end nor, past the neighbour's other end, its face: that is for the neighbour's own contact."""
-    ellipse = Placed(1, 0.5, 2.05, 0.0)
-    assert chained(ellipse).distance == pytest.approx(0.05)
-    assert chained(ellipse, after=(0.1, 0.0)).distance == UNTOUCHED
-    assert chained(ellipse, before=(-0.1, 0.0)).distance == pytest.approx(0.05)
+def test_dense_chain_is_one_floor():
+    """Far over a neighbour the contact is that with the neighbour's line, whichever segment was chosen."""
+    for x in (1.3, 1.9, 2.05, 2.4, 2.9):
+        ellipse = Placed(1, 0.5, x, 0.45)
+        for after in ((0.1, 0.0), (0.02, 0.0), (7.0, 0.0)):
+            found = chained(ellipse, after=after)
+            assert found.distance == pytest.approx(-0.05)
+            assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
+        mirrored = chained(ellipse._replace(x=-x), before=(-0.1, 0.0))
+        assert mirrored.distance == pytest.approx(-0.05)
+
+
+def test_neighbour_that_rises_leaves_the_segment_its_own_line():
+    """Pressed into a valley, each of the two segments gives the contact with its own face."""
+    ellipse = Placed(0.5, 0.5, 1.2, 0.3)
+    found = chained(ellipse, after=(2.0, 2.0))
+    assert found.distance == pytest.approx(-0.2)
+    assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
+
+
+def test_joint_of_a_straight_chain_is_not_lost():
+    """Where the ellipse stands on a joint, up to roundoff, neither segment leaves it to the other."""
+    random = np.random.default_rng(80)
+    for _ in range(200):
+        angle, length = random.uniform(-pi, pi), random.uniform(0.02, 2)
+        ex, ey = length * cos(angle), length * sin(angle)
+        x, y = random.uniform(-1e3, 1e3, 2)
+        nx, ny = ey / length, -ex / length
+        ellipse = Placed(2, 0.5, 0, 0, random.uniform(-pi, pi))
+        px, py = support_point(ellipse, nx, ny)
+        at = frame(ellipse._replace(x=x - px + 0.1 * nx, y=y - py + 0.1 * ny))
+        for start, before, after in (
+            ((x, y), (-ex, -ey), (ex, ey)),
+            ((x - ex, y - ey), (0.0, 0.0), (ex, ey)),
+        ):
+            end = start[0] + ex, start[1] + ey
+            found = Found(*ellipse_segment(at, start, end, before, after, 0.0))
+            assert found.distance == pytest.approx(-0.1, abs=1e-9)
+            assert (found.nx, found.ny) == pytest.approx((nx, ny), abs=1e-6)
 
 
 def test_neighbour_that_leads_away_is_touched_by_its_face():

@@ -23,8 +23,9 @@ FACE = -1
 # Bound on a loop; so often a half turn can be halved.
 MAX_HALVINGS = 60
 
-# The distance to a segment whose touched end does not count.
-UNTOUCHED = 1.0 / TINY
+# How much of a neighbour's length the normal may lead back along it where an end still counts:
+# at a joint of a straight floor neither of the two segments may leave the contact to the other.
+JOINT_TOLERANCE = 1e-9
 
 
 def ellipse_polygon(
@@ -71,7 +72,7 @@ def polygon_contact(
         return ellipse_ellipse(ellipse, corner, 0.0, 0.0), 0
 
     feature = FACE
-    contact, past_end = along_normal(ellipse, planes, face, radius, nx, ny)
+    contact, past_end = along_normal(ellipse, vertex(planes, face), radius, nx, ny)
     start = (face - 1) % count
     ex = planes[4 * face] - planes[4 * start]
     ey = planes[4 * face + 1] - planes[4 * start + 1]
@@ -101,8 +102,8 @@ def climb_polygon(
     Only the places of the vertices count here, so that any number of them may lie on one edge
     or on one another, up to roundoff.
     """
-    i = nearest_vertex(ellipse, planes, count, nx, ny)
-    contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+    i = nearest_vertex(planes, count, nx, ny)
+    contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
     sense = 1.0 if slope >= 0.0 else -1.0
     for _ in range(count):
         touched = around_vertex(ellipse, planes, i, radius, nx, ny)
@@ -111,13 +112,13 @@ def climb_polygon(
         # On the way another vertex came nearer. Turn to where the first one does.
         j = next_vertex(planes, count, i, nx, ny, sense)
         mx, my = normal_to_edge(planes, i, j, sense)
-        contact, slope = along_normal(ellipse, planes, i, radius, mx, my)
+        contact, slope = along_normal(ellipse, vertex(planes, i), radius, mx, my)
         if sense * slope < 0.0:
             return climb_between(ellipse, planes, count, radius, i, nx, ny, mx, my), i
         nx = mx
         ny = my
         i = j
-        _contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+        _contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
         if sense * slope <= 0.0:
             break
     return contact, FACE
@@ -135,7 +136,7 @@ def climb_between(
     my: float,
 ) -> Contact:
     """The maximum of f for vertex i between n and m, less than half a turn apart, from which f rises to both sides' middle."""
-    contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+    contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
     sense = 1.0 if slope >= 0.0 else -1.0
     for _ in range(MAX_HALVINGS):
         middle_x = nx + mx - sense * (ny - my)
@@ -146,7 +147,9 @@ def climb_between(
         contact = around_vertex(ellipse, planes, i, radius, middle_x, middle_y)
         if is_nearest(ellipse, planes, count, i, contact):
             break
-        contact, slope = along_normal(ellipse, planes, i, radius, middle_x, middle_y)
+        contact, slope = along_normal(
+            ellipse, vertex(planes, i), radius, middle_x, middle_y
+        )
         if sense * slope > 0.0:
             nx = middle_x
             ny = middle_y
@@ -173,8 +176,8 @@ def sweep_polygon(
     slack = max(DEPTH_TOLERANCE * b, noise)
     swept = 0.0
     for _ in range(MAX_JUMPS):
-        i = nearest_vertex(ellipse, planes, count, nx, ny)
-        contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+        i = nearest_vertex(planes, count, nx, ny)
+        contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
         f, _nx, _ny, px, py = contact
         if f > best[0] + noise:
             best, feature = climb_polygon(ellipse, planes, count, radius, nx, ny)
@@ -199,27 +202,32 @@ def ellipse_segment(
 
     before and after lead from the segment's start and end to the other ends of its neighbours,
     and are zero where it has none. An end that the ellipse touches from over its neighbour does
-    not count (Chipmunk's rule for circles); the neighbour itself is then taken, because
-    Chipmunk decides by the hull which segment of a chain is touched, and the hull's nearest
-    point may lie over one and the ellipse's over the next. Where the neighbour is not touched
-    either, the distance is UNTOUCHED.
+    not count (Chipmunk's rule for circles). Chipmunk has chosen this segment by the hull, which
+    may touch a neighbour or another one further on, and may report none of those. So this one
+    stands in for them: where the neighbour rises towards an ellipse that overlaps the segment,
+    with its own line, which lies below the chain; else with the neighbour, and beyond the
+    neighbour's other end with the neighbour's line.
 
     For the rest see ellipse_ellipse.
     """
-    contact, joint = line_contact(ellipse, start, end, radius)
-    _distance, nx, ny, _px, _py = contact
-    if joint == 0 and nx * before[0] + ny * before[1] < 0.0:
-        end = (start[0] + before[0], start[1] + before[1])
-    elif joint == 1 and nx * after[0] + ny * after[1] < 0.0:
-        start = (end[0] + after[0], end[1] + after[1])
-    else:
-        return contact
-
     contact, feature = line_contact(ellipse, start, end, radius)
-    # Where two of a chain meet, roundoff may let each leave the contact to the other.
-    if feature != FACE and feature != joint:
-        _distance, nx, ny, px, py = contact
-        return UNTOUCHED, nx, ny, px, py
+    if feature == FACE:
+        return contact
+    joint = start if feature == 0 else end
+    tx, ty = before if feature == 0 else after
+    distance, nx, ny, _px, _py = contact
+    level = JOINT_TOLERANCE * sqrt(tx * tx + ty * ty)
+    if nx * tx + ny * ty >= -level:
+        return contact
+    nx, ny = normal_to_line(ellipse, start, (end[0] - start[0], end[1] - start[1]))
+    if distance <= 0.0 and nx * tx + ny * ty < -level:
+        return along_normal(ellipse, joint, radius, nx, ny)[0]
+    contact, feature = line_contact(
+        ellipse, joint, (joint[0] + tx, joint[1] + ty), radius
+    )
+    if feature == 1:
+        nx, ny = normal_to_line(ellipse, joint, (tx, ty))
+        return along_normal(ellipse, joint, radius, nx, ny)[0]
     return contact
 
 
@@ -227,26 +235,37 @@ def line_contact(
     ellipse: Frame, start: Vector, end: Vector, radius: float
 ) -> tuple[Contact, int]:
     """The contact of an ellipse and a segment without neighbours: a polygon of two vertices, start and end."""
-    ex = end[0] - start[0]
-    ey = end[1] - start[1]
-    length = sqrt(ex * ex + ey * ey) + TINY
-    nx = ey / length
-    ny = -ex / length
+    nx, ny = perpendicular(end[0] - start[0], end[1] - start[1])
     planes = (start[0], start[1], -nx, -ny, end[0], end[1], nx, ny)
     return polygon_contact(ellipse, planes, 2, radius)
 
 
-def nearest_vertex(
-    ellipse: Frame, planes: Sequence[float], count: int, nx: float, ny: float
-) -> int:
-    """The vertex that is least far along n."""
-    _a, _b, _c, _s, x, y = ellipse
+def normal_to_line(ellipse: Frame, point: Vector, along: Vector) -> Vector:
+    """The unit normal from an ellipse's centre to a line through a point; zero for a line without direction."""
+    nx, ny = perpendicular(along[0], along[1])
+    if (point[0] - ellipse[4]) * nx + (point[1] - ellipse[5]) * ny < 0.0:
+        return -nx, -ny
+    return nx, ny
+
+
+def perpendicular(x: float, y: float) -> Vector:
+    """The unit vector a quarter turn clockwise from a vector; zero if that is zero."""
+    length = sqrt(x * x + y * y)
+    if length == 0.0:
+        return 0.0, 0.0
+    return y / length, -x / length
+
+
+def nearest_vertex(planes: Sequence[float], count: int, nx: float, ny: float) -> int:
+    """The vertex that is least far along n.
+
+    Compares differences, which are exact where two vertices are the same up to roundoff.
+    """
     nearest = 0
-    least = 1.0 / TINY
-    for i in range(count):
-        far = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
-        if far < least:
-            least = far
+    for i in range(1, count):
+        dx = planes[4 * i] - planes[4 * nearest]
+        dy = planes[4 * i + 1] - planes[4 * nearest + 1]
+        if dx * nx + dy * ny < 0.0:
             nearest = i
     return nearest
 
@@ -307,10 +326,15 @@ def normal_to_edge(
     return -ey / length, ex / length
 
 
+def vertex(planes: Sequence[float], i: int) -> Vector:
+    """Where vertex i is."""
+    return planes[4 * i], planes[4 * i + 1]
+
+
 def along_normal(
-    ellipse: Frame, planes: Sequence[float], i: int, radius: float, nx: float, ny: float
+    ellipse: Frame, point: Vector, radius: float, nx: float, ny: float
 ) -> tuple[Contact, float]:
-    """The contact along the unit vector n as if the plane through vertex i were touched, and f' for that vertex."""
+    """The contact along the unit vector n with the plane through a point, and f' for that point."""
     a, b, c, s, x, y = ellipse
     u = a * (c * nx + s * ny)
     v = b * (c * ny - s * nx)
@@ -319,8 +343,8 @@ def along_normal(
     v *= b / h
     px = c * u - s * v
     py = s * u + c * v
-    dx = planes[4 * i] - x
-    dy = planes[4 * i + 1] - y
+    dx = point[0] - x
+    dy = point[1] - y
     f = dx * nx + dy * ny - h - radius
     return (f, nx, ny, px, py), (dy - py) * nx - (dx - px) * ny
 

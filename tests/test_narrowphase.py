@@ -505,31 +505,45 @@ def test_segment_neighbour_takes_over_past_the_end():
     assert before[:3] == pytest.approx(found[:3])
 
 
-def test_past_short_neighbours_the_line_of_the_chain_counts():
-    """The ellipse lies on a floor of short segments, and only the first of them is reported."""
-    for length in (2.0, 0.4, 0.1, 0.01):
-        found = chained(Placed(2, 0.5, 1.5, 0.45), after=(length, 0.0))
-        assert found.distance == pytest.approx(-0.05)
-        assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
-        assert found.x == pytest.approx(0, abs=1e-9)
+def test_dense_chain_is_one_floor():
+    """Far over a neighbour the contact is that with the neighbour's line, whichever segment was chosen."""
+    for x in (1.3, 1.9, 2.05, 2.4, 2.9):
+        ellipse = Placed(1, 0.5, x, 0.45)
+        for after in ((0.1, 0.0), (0.02, 0.0), (7.0, 0.0)):
+            found = chained(ellipse, after=after)
+            assert found.distance == pytest.approx(-0.05)
+            assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
+        mirrored = chained(ellipse._replace(x=-x), before=(-0.1, 0.0))
+        assert mirrored.distance == pytest.approx(-0.05)
 
 
-def test_where_the_neighbour_rises_the_segments_own_line_counts():
-    """In a hollow, in the way of both segments: each holds by its own line, whatever is reported."""
-    ellipse = Placed(2, 0.5, 1.2, 0.45)
-    found = chained(ellipse, after=(1.0, 1.0))
-    assert found.distance == pytest.approx(-0.05)
+def test_neighbour_that_rises_leaves_the_segment_its_own_line():
+    """Pressed into a valley, each of the two segments gives the contact with its own face."""
+    ellipse = Placed(0.5, 0.5, 1.2, 0.3)
+    found = chained(ellipse, after=(2.0, 2.0))
+    assert found.distance == pytest.approx(-0.2)
     assert (found.nx, found.ny) == pytest.approx((0, -1), abs=1e-9)
-    # Apart from it the neighbour is what is near.
-    apart = chained(Placed(0.5, 0.25, 1.6, 0.75), after=(1.0, 1.0))
-    direct = chained_line(Placed(0.5, 0.25, 1.6, 0.75), (1, 0), (2, 1))
-    assert apart[:3] == pytest.approx(direct[:3])
 
 
-def chained_line(ellipse, start, end):
-    """The contact with a segment that has no neighbours."""
-    zero = (0.0, 0.0)
-    return Found(*ellipse_segment(frame(ellipse), start, end, zero, zero, 0.0))
+def test_joint_of_a_straight_chain_is_not_lost():
+    """Where the ellipse stands on a joint, up to roundoff, neither segment leaves it to the other."""
+    random = np.random.default_rng(80)
+    for _ in range(200):
+        angle, length = random.uniform(-pi, pi), random.uniform(0.02, 2)
+        ex, ey = length * cos(angle), length * sin(angle)
+        x, y = random.uniform(-1e3, 1e3, 2)
+        nx, ny = ey / length, -ex / length
+        ellipse = Placed(2, 0.5, 0, 0, random.uniform(-pi, pi))
+        px, py = support_point(ellipse, nx, ny)
+        at = frame(ellipse._replace(x=x - px + 0.1 * nx, y=y - py + 0.1 * ny))
+        for start, before, after in (
+            ((x, y), (-ex, -ey), (ex, ey)),
+            ((x - ex, y - ey), (0.0, 0.0), (ex, ey)),
+        ):
+            end = start[0] + ex, start[1] + ey
+            found = Found(*ellipse_segment(at, start, end, before, after, 0.0))
+            assert found.distance == pytest.approx(-0.1, abs=1e-9)
+            assert (found.nx, found.ny) == pytest.approx((nx, ny), abs=1e-6)
 
 
 def test_neighbour_that_leads_away_is_touched_by_its_face():

@@ -20,8 +20,11 @@ Vector = tuple[float, float]
 
 FACE = -1
 
-# The normal at a joint may be aside by this part of the way to the neighbour's end and still count, so
-# that roundoff does not have both segments leave the contact to the other.
+# Bound on a loop; so often a half turn can be halved.
+MAX_HALVINGS = 60
+
+# How much of a neighbour's length the normal may lead back along it where an end still counts:
+# at a joint of a straight floor neither of the two segments may leave the contact to the other.
 JOINT_TOLERANCE = 1e-9
 
 
@@ -69,7 +72,7 @@ def polygon_contact(
         return ellipse_ellipse(ellipse, corner, 0.0, 0.0), 0
 
     feature = FACE
-    contact, past_end = along_normal(ellipse, planes, face, radius, nx, ny)
+    contact, past_end = along_normal(ellipse, vertex(planes, face), radius, nx, ny)
     start = (face - 1) % count
     ex = planes[4 * face] - planes[4 * start]
     ey = planes[4 * face + 1] - planes[4 * start + 1]
@@ -94,45 +97,66 @@ def climb_polygon(
     nx: float,
     ny: float,
 ) -> tuple[Contact, int]:
-    """Turn n uphill to a maximum of f, which belongs to the vertex that is nearest along n, whichever that is.
+    """Turn n uphill to a maximum of f, around one vertex of the polygon's convex hull after the other.
 
-    Vertices count by where they are alone, so that any number of them may lie on one edge, up
-    to roundoff.
+    Only the places of the vertices count here, so that any number of them may lie on one edge
+    or on one another, up to roundoff.
     """
-    i = nearest_vertex(ellipse, planes, count, nx, ny)
-    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
-    if is_nearest(ellipse, planes, count, i, contact):
-        return contact, i
-
-    # On the way another vertex came nearer. f rises for one and falls for the other along the
-    # normal to both, if that is where the maximum is and nothing else is nearer there.
-    _f, mx, my, _px, _py = contact
-    j = nearest_vertex(ellipse, planes, count, mx, my)
-    sense = 1.0 if nx * my >= ny * mx else -1.0
+    i = nearest_vertex(planes, count, nx, ny)
+    contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
+    sense = 1.0 if slope >= 0.0 else -1.0
     for _ in range(count):
-        ex = planes[4 * j] - planes[4 * i]
-        ey = planes[4 * j + 1] - planes[4 * i + 1]
-        length = sense * sqrt(ex * ex + ey * ey)
-        nx = -ey / length
-        ny = ex / length
-        face, slope = along_normal(ellipse, planes, i, radius, nx, ny)
-        if is_nearest(ellipse, planes, count, i, face):
-            break
-        k = nearest_vertex(ellipse, planes, count, nx, ny)
-        _contact, slope = along_normal(ellipse, planes, k, radius, nx, ny)
-        if sense * slope > 0.0:
-            i = k
-        else:
-            j = k
-    if sense * slope >= 0.0:
+        touched = around_vertex(ellipse, planes, i, radius, nx, ny)
+        if is_nearest(ellipse, planes, count, i, touched):
+            return touched, i
+        # On the way another vertex came nearer. Turn to where the first one does.
+        j = next_vertex(planes, count, i, nx, ny, sense)
+        mx, my = normal_to_edge(planes, i, j, sense)
+        contact, slope = along_normal(ellipse, vertex(planes, i), radius, mx, my)
+        if sense * slope < 0.0:
+            return climb_between(ellipse, planes, count, radius, i, nx, ny, mx, my), i
+        nx = mx
+        ny = my
         i = j
-        _contact, slope = along_normal(ellipse, planes, j, radius, nx, ny)
+        _contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
         if sense * slope <= 0.0:
-            return face, FACE
-    contact = around_vertex(ellipse, planes, i, radius, nx, ny)
-    if is_nearest(ellipse, planes, count, i, contact):
-        return contact, i
-    return face, FACE
+            break
+    return contact, FACE
+
+
+def climb_between(
+    ellipse: Frame,
+    planes: Sequence[float],
+    count: int,
+    radius: float,
+    i: int,
+    nx: float,
+    ny: float,
+    mx: float,
+    my: float,
+) -> Contact:
+    """The maximum of f for vertex i between n and m, less than half a turn apart, from which f rises to both sides' middle."""
+    contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
+    sense = 1.0 if slope >= 0.0 else -1.0
+    for _ in range(MAX_HALVINGS):
+        middle_x = nx + mx - sense * (ny - my)
+        middle_y = ny + my + sense * (nx - mx)
+        length = sqrt(middle_x * middle_x + middle_y * middle_y)
+        middle_x /= length
+        middle_y /= length
+        contact = around_vertex(ellipse, planes, i, radius, middle_x, middle_y)
+        if is_nearest(ellipse, planes, count, i, contact):
+            break
+        contact, slope = along_normal(
+            ellipse, vertex(planes, i), radius, middle_x, middle_y
+        )
+        if sense * slope > 0.0:
+            nx = middle_x
+            ny = middle_y
+        else:
+            mx = middle_x
+            my = middle_y
+    return contact
 
 
 def sweep_polygon(
@@ -152,14 +176,11 @@ def sweep_polygon(
     slack = max(DEPTH_TOLERANCE * b, noise)
     swept = 0.0
     for _ in range(MAX_JUMPS):
-        i = nearest_vertex(ellipse, planes, count, nx, ny)
-        contact, slope = along_normal(ellipse, planes, i, radius, nx, ny)
+        i = nearest_vertex(planes, count, nx, ny)
+        contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
         f, _nx, _ny, px, py = contact
         if f > best[0] + noise:
-            better, i = climb_polygon(ellipse, planes, count, radius, nx, ny)
-            if better[0] > best[0]:
-                best = better
-                feature = i
+            best, feature = climb_polygon(ellipse, planes, count, radius, nx, ny)
         inscribed = b * b / (px * nx + py * ny) + radius
         jump = jump_past(f, slope, inscribed, best[0] + slack)
         swept += jump
@@ -181,52 +202,32 @@ def ellipse_segment(
 
     before and after lead from the segment's start and end to the other ends of its neighbours,
     and are zero where it has none. An end that the ellipse touches from over its neighbour does
-    not count (Chipmunk's rule for circles). But Chipmunk decides by the hull which segment of a
-    chain it reports, and may report this one alone while the ellipse stands on another. So
-    where an end does not count, what the chain does there is taken instead: the segment's own
-    line, if the neighbour rises on the ellipse's side of it; else the neighbour, or its line
-    where the chain is so dense that the neighbour's far end would be touched.
+    not count (Chipmunk's rule for circles). Chipmunk has chosen this segment by the hull, which
+    may touch a neighbour or another one further on, and may report none of those. So this one
+    stands in for them: where the neighbour rises towards an ellipse that overlaps the segment,
+    with its own line, which lies below the chain; else with the neighbour, and beyond the
+    neighbour's other end with the neighbour's line.
 
     For the rest see ellipse_ellipse.
     """
-    contact, joint = line_contact(ellipse, start, end, radius)
-    if joint == FACE:
+    contact, feature = line_contact(ellipse, start, end, radius)
+    if feature == FACE:
         return contact
-    tx, ty = before if joint == 0 else after
-    least = JOINT_TOLERANCE * (abs(tx) + abs(ty))
+    joint = start if feature == 0 else end
+    tx, ty = before if feature == 0 else after
     distance, nx, ny, _px, _py = contact
-    if nx * tx + ny * ty >= -least:
+    level = JOINT_TOLERANCE * sqrt(tx * tx + ty * ty)
+    if nx * tx + ny * ty >= -level:
         return contact
-
-    mx, my = normal_to_line(ellipse, start, (end[0] - start[0], end[1] - start[1]))
-    if distance <= 0.0 and mx * tx + my * ty < -least:
-        return face_contact(ellipse, start, radius, mx, my)
-    corner = start if joint == 0 else end
-    far = (corner[0] + tx, corner[1] + ty)
-    contact, feature = line_contact(ellipse, corner, far, radius)
+    nx, ny = normal_to_line(ellipse, start, (end[0] - start[0], end[1] - start[1]))
+    if distance <= 0.0 and nx * tx + ny * ty < -level:
+        return along_normal(ellipse, joint, radius, nx, ny)[0]
+    contact, feature = line_contact(
+        ellipse, joint, (joint[0] + tx, joint[1] + ty), radius
+    )
     if feature == 1:
-        mx, my = normal_to_line(ellipse, corner, (tx, ty))
-        return face_contact(ellipse, corner, radius, mx, my)
-    return contact
-
-
-def normal_to_line(ellipse: Frame, start: Vector, along: Vector) -> Vector:
-    """The unit normal from an ellipse's centre to the line through a point in a direction of any length."""
-    tx, ty = along
-    length = sqrt(tx * tx + ty * ty) + TINY
-    nx = ty / length
-    ny = -tx / length
-    if (start[0] - ellipse[4]) * nx + (start[1] - ellipse[5]) * ny < 0.0:
-        return -nx, -ny
-    return nx, ny
-
-
-def face_contact(
-    ellipse: Frame, point: Vector, radius: float, nx: float, ny: float
-) -> Contact:
-    """The contact with the plane through a point that has the unit normal n, from the ellipse to it."""
-    planes = (point[0], point[1])
-    contact, _slope = along_normal(ellipse, planes, 0, radius, nx, ny)
+        nx, ny = normal_to_line(ellipse, joint, (tx, ty))
+        return along_normal(ellipse, joint, radius, nx, ny)[0]
     return contact
 
 
@@ -234,26 +235,37 @@ def line_contact(
     ellipse: Frame, start: Vector, end: Vector, radius: float
 ) -> tuple[Contact, int]:
     """The contact of an ellipse and a segment without neighbours: a polygon of two vertices, start and end."""
-    ex = end[0] - start[0]
-    ey = end[1] - start[1]
-    length = sqrt(ex * ex + ey * ey) + TINY
-    nx = ey / length
-    ny = -ex / length
+    nx, ny = perpendicular(end[0] - start[0], end[1] - start[1])
     planes = (start[0], start[1], -nx, -ny, end[0], end[1], nx, ny)
     return polygon_contact(ellipse, planes, 2, radius)
 
 
-def nearest_vertex(
-    ellipse: Frame, planes: Sequence[float], count: int, nx: float, ny: float
-) -> int:
-    """The vertex that is least far along n."""
-    _a, _b, _c, _s, x, y = ellipse
+def normal_to_line(ellipse: Frame, point: Vector, along: Vector) -> Vector:
+    """The unit normal from an ellipse's centre to a line through a point; zero for a line without direction."""
+    nx, ny = perpendicular(along[0], along[1])
+    if (point[0] - ellipse[4]) * nx + (point[1] - ellipse[5]) * ny < 0.0:
+        return -nx, -ny
+    return nx, ny
+
+
+def perpendicular(x: float, y: float) -> Vector:
+    """The unit vector a quarter turn clockwise from a vector; zero if that is zero."""
+    length = sqrt(x * x + y * y)
+    if length == 0.0:
+        return 0.0, 0.0
+    return y / length, -x / length
+
+
+def nearest_vertex(planes: Sequence[float], count: int, nx: float, ny: float) -> int:
+    """The vertex that is least far along n.
+
+    Compares differences, which are exact where two vertices are the same up to roundoff.
+    """
     nearest = 0
-    least = 1.0 / TINY
-    for i in range(count):
-        far = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
-        if far < least:
-            least = far
+    for i in range(1, count):
+        dx = planes[4 * i] - planes[4 * nearest]
+        dy = planes[4 * i + 1] - planes[4 * nearest + 1]
+        if dx * nx + dy * ny < 0.0:
             nearest = i
     return nearest
 
@@ -264,8 +276,10 @@ def is_nearest(
     """Whether no vertex is less far along the contact's normal than vertex i, by more than roundoff."""
     a, _b, _c, _s, x, y = ellipse
     _f, nx, ny, _px, _py = contact
-    least = (planes[4 * i] - x) * nx + (planes[4 * i + 1] - y) * ny
-    least -= ROUNDOFF * (a + abs(x) + abs(y))
+    dx = planes[4 * i] - x
+    dy = planes[4 * i + 1] - y
+    roundoff = ROUNDOFF * (a + abs(x) + abs(y) + abs(dx) + abs(dy))
+    least = dx * nx + dy * ny - roundoff
     nearest = True
     for k in range(count):
         far = (planes[4 * k] - x) * nx + (planes[4 * k + 1] - y) * ny
@@ -273,10 +287,54 @@ def is_nearest(
     return nearest
 
 
+def next_vertex(
+    planes: Sequence[float], count: int, i: int, nx: float, ny: float, sense: float
+) -> int:
+    """The vertex that comes nearest next after vertex i as n turns, counterclockwise for a sense of 1.
+
+    Gift wrapping (R. A. Jarvis, "On the identification of the convex hull of a finite set of
+    points in the plane", 1973).
+    """
+    following = i
+    soon = False
+    dx = 0.0
+    dy = 0.0
+    for k in range(count):
+        ex = planes[4 * k] - planes[4 * i]
+        ey = planes[4 * k + 1] - planes[4 * i + 1]
+        if ex == 0.0 and ey == 0.0:
+            continue
+        # Less than a quarter turn away or more, so that of two on one line with vertex i the
+        # one behind does not count.
+        sooner = sense * (ex * ny - ey * nx) > 0.0
+        if following == i or (sooner and not soon):
+            better = True
+        else:
+            better = sooner == soon and sense * (ex * dy - ey * dx) > 0.0
+        if better:
+            following, soon, dx, dy = k, sooner, ex, ey
+    return following
+
+
+def normal_to_edge(
+    planes: Sequence[float], i: int, j: int, sense: float
+) -> tuple[float, float]:
+    """The contact normal into the edge from vertex i to vertex j, which follows in the given sense of turning."""
+    ex = planes[4 * j] - planes[4 * i]
+    ey = planes[4 * j + 1] - planes[4 * i + 1]
+    length = sense * sqrt(ex * ex + ey * ey)
+    return -ey / length, ex / length
+
+
+def vertex(planes: Sequence[float], i: int) -> Vector:
+    """Where vertex i is."""
+    return planes[4 * i], planes[4 * i + 1]
+
+
 def along_normal(
-    ellipse: Frame, planes: Sequence[float], i: int, radius: float, nx: float, ny: float
+    ellipse: Frame, point: Vector, radius: float, nx: float, ny: float
 ) -> tuple[Contact, float]:
-    """The contact along the unit vector n as if the plane through vertex i were touched, and f' for that vertex."""
+    """The contact along the unit vector n with the plane through a point, and f' for that point."""
     a, b, c, s, x, y = ellipse
     u = a * (c * nx + s * ny)
     v = b * (c * ny - s * nx)
@@ -285,8 +343,8 @@ def along_normal(
     v *= b / h
     px = c * u - s * v
     py = s * u + c * v
-    dx = planes[4 * i] - x
-    dy = planes[4 * i + 1] - y
+    dx = point[0] - x
+    dy = point[1] - y
     f = dx * nx + dy * ny - h - radius
     return (f, nx, ny, px, py), (dy - py) * nx - (dx - px) * ny
 

@@ -84,6 +84,7 @@ def module() -> Any:
         (shape_class.cast_updated, (hull, *[number] * 5)),
         (shape_class.nearest_now, (hull, number, number)),
         (shape_class.cast_now, (hull, *[number] * 5)),
+        (shape_class.collect_touched, (word, word)),
         (pair.shape_contact, (hull, struct("Shape"))),
         (rows.contacts_of_rows, (word, numbers, word, numbers, word, numbers)),
         (rows.nearest_of_rows, (word, numbers, word, numbers, word, numbers)),

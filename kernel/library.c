@@ -23,6 +23,7 @@ int pe_native_cast_updated(double *, void **, void *, double, double, double, do
 int pe_native_nearest_now(double *, void **, void *, double, double);
 int pe_native_cast_now(double *, void **, void *, double, double, double, double, double);
 int pe_native_shape_contact(double *, void **, void *, void *);
+int pe_native_collect_touched(void *, void **, int64_t, int64_t);
 int pe_native_contacts_of_rows(void *, void **, int64_t, const double *, int64_t, const double *, int64_t, double *);
 int pe_native_nearest_of_rows(void *, void **, int64_t, const double *, int64_t, const double *, int64_t, double *);
 
@@ -90,6 +91,11 @@ EXPORTED void pe_cast_now(void *ellipse, double start_x, double start_y, double 
                           double radius, double *result) {
     void *exception = 0;
     pe_native_cast_now(result, &exception, ellipse, start_x, start_y, end_x, end_y, radius);
+}
+
+EXPORTED void pe_collect_touched(void *shape, void *ray) {
+    void *nothing = 0, *exception = 0;
+    pe_native_collect_touched(&nothing, &exception, (intptr_t)shape, (intptr_t)ray);
 }
 
 EXPORTED void pe_contacts_of_rows(int64_t count, const double *first, int64_t first_step, const double *second,

@@ -148,6 +148,7 @@ def compile_structs() -> None:
         ("Segment", structs.segment_at),
         ("Poly", structs.polygon_at),
         ("Hull", structs.hull_at),
+        ("WideRay", structs.ray_at),
     ):
         _compile_cast(at, name)
 

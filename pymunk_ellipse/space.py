@@ -14,13 +14,17 @@ from pymunk import (
     ShapeFilter,
     ShapeQueryInfo,
     SpaceDebugDrawOptions,
+    Vec2d,
 )
 
-from . import _checks, wide_rays
+from . import _checks
+from .chipmunk.private import shape_at_address
+from .chipmunk.structs import address
 from .contacts.events import EventSpace
-from .contacts.handler import has_ellipses
+from .contacts.handler import ellipses_in
 from .drawing import TrueOutlines
 from .ellipse import Ellipse
+from .wide_rays import overlooked_ellipses
 
 
 class Space(EventSpace):
@@ -61,7 +65,7 @@ class Space(EventSpace):
         >>> hit.point, hit.distance, hit.gradient
         (Vec2d(0.0, 10.0), 3.0, Vec2d(0.0, 1.0))
         """
-        if has_ellipses(self):
+        if ellipses_in(self):
             point = _checks.point("point", point)
             max_distance = _checks.number_or_infinity("max_distance", max_distance)
         return super().point_query(point, max_distance, shape_filter)
@@ -70,7 +74,7 @@ class Space(EventSpace):
         self, point: tuple[float, float], max_distance: float, shape_filter: ShapeFilter
     ) -> PointQueryInfo | None:
         """The shape nearest to the point, if nearer than max_distance; see :py:meth:`point_query`."""
-        if has_ellipses(self):
+        if ellipses_in(self):
             point = _checks.point("point", point)
             max_distance = _checks.number_or_infinity("max_distance", max_distance)
         return super().point_query_nearest(point, max_distance, shape_filter)
@@ -98,21 +102,23 @@ class Space(EventSpace):
         >>> hit.point, hit.normal, hit.alpha
         (Vec2d(0.0, 10.0), Vec2d(0.0, 1.0), 0.4)
         """
-        if not has_ellipses(self):
+        if not ellipses_in(self):
             return super().segment_query(start, end, radius, shape_filter)
         start = _checks.point("start", start)
         end = _checks.point("end", end)
         radius = _checks.number("radius", radius)
         found = super().segment_query(start, end, radius, shape_filter)
         if radius > 0.0:
-            seen = {hit.shape for hit in found}
-            for ellipse in wide_rays.ellipses_along(
-                self, start, end, radius, shape_filter
-            ):
-                if ellipse not in seen:
-                    hit = ellipse.segment_query(start, end, radius)
-                    if hit is not None:
-                        found.append(hit)
+            seen = {address(hit.shape._shape) for hit in found if hit.shape}
+            touched = overlooked_ellipses(
+                self, start, end, radius, shape_filter, ellipses_in(self)
+            )
+            for place, (alpha, nx, ny, px, py) in touched:
+                if place not in seen:
+                    shape = shape_at_address(place)
+                    found.append(
+                        SegmentQueryInfo(shape, Vec2d(px, py), Vec2d(nx, ny), alpha)
+                    )
         return found
 
     def segment_query_first(
@@ -126,7 +132,7 @@ class Space(EventSpace):
 
         One that it touches only at the end does not count, as in pymunk.
         """
-        if not has_ellipses(self):
+        if not ellipses_in(self):
             return super().segment_query_first(start, end, radius, shape_filter)
         if _checks.number("radius", radius) > 0.0:
             # Chipmunk's own search for the first leaves out what the circle touches before its
@@ -148,7 +154,7 @@ class Space(EventSpace):
         >>> space.bb_query(pymunk.BB(20.5, 0, 30, 10), pymunk.ShapeFilter())
         []
         """
-        if has_ellipses(self):
+        if ellipses_in(self):
             bb = _checks.box("bb", bb)
         return super().bb_query(bb, shape_filter)
 
@@ -203,7 +209,7 @@ class Space(EventSpace):
         100 vertices, radius 0.0
         from Vec2d(0.0, 0.0) to Vec2d(200.0, 0.0)
         """
-        if has_ellipses(self):
+        if ellipses_in(self):
             options = cast(SpaceDebugDrawOptions, TrueOutlines(options))
         super().debug_draw(options)
 

@@ -1,45 +1,45 @@
-"""The ellipses that a moving circle may touch, where Chipmunk looks for shapes along the line of its centre only."""
+"""The ellipses that a moving circle touches, where Chipmunk looks for shapes along the line of its centre only."""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
 
 import pymunk
 from pymunk import BB, ShapeFilter, Vec2d
 
-from .ellipse import Ellipse
+from .chipmunk.private import query_box
+from .chipmunk.structs import address, ffi
+from .contacts.backend import kernel
+from .narrowphase.cast import Hit
 
-# A way is covered by a box for each so many radii, but not by more than this. More of them hold
-# fewer shapes that are not near it, and each costs a query.
-PIECE = 10.0
-MOST_PIECES = 8
-
-# Boxes are larger by this part of the coordinates, so that roundoff cannot lose a shape.
+# The box is larger by this part of the coordinates, so that roundoff cannot lose a shape.
 MARGIN = 1e-12
 
 
-def ellipses_along(
+def overlooked_ellipses(
     space: pymunk.Space,
     start: Vec2d,
     end: Vec2d,
     radius: float,
     shape_filter: ShapeFilter,
-) -> Iterator[Ellipse]:
-    """Every ellipse in a space that a circle of the given radius may touch on its way from start to end, and a few more."""
-    seen = set()
+    room: int,
+) -> list[tuple[int, Hit]]:
+    """The addresses of the ellipses in a space that a circle touches beside the line from start to end, and where it does.
+
+    They are all those that Chipmunk overlooks, and up to roundoff no others.
+
+    room is how many ellipses there are in the space.
+    """
+    touched = ffi.new("intptr_t[]", room)
+    ray = ffi.new("WideRay *", {"start": start, "end": end, "radius": radius})
+    hits = ffi.new("double[]", 5 * room)
+    ray.touched = touched
+    ray.hits = hits
     size = max(abs(start.x), abs(start.y), abs(end.x), abs(end.y))
     reach = radius + MARGIN * size
-    pieces = int(min(1.0 + abs(end - start) / (PIECE * radius), MOST_PIECES))
-    for i in range(pieces):
-        near = start.interpolate_to(end, i / pieces)
-        far = start.interpolate_to(end, (i + 1) / pieces)
-        piece = BB(
-            min(near.x, far.x) - reach,
-            min(near.y, far.y) - reach,
-            max(near.x, far.x) + reach,
-            max(near.y, far.y) + reach,
-        )
-        for shape in space.bb_query(piece, shape_filter):
-            if isinstance(shape, Ellipse) and shape not in seen:
-                seen.add(shape)
-                yield shape
+    box = BB(
+        min(start.x, end.x) - reach,
+        min(start.y, end.y) - reach,
+        max(start.x, end.x) + reach,
+        max(start.y, end.y) + reach,
+    )
+    query_box(space, box, shape_filter, kernel().collect_touched, address(ray))
+    return [(touched[i], tuple(hits[5 * i : 5 * i + 5])) for i in range(ray.count)]

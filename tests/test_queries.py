@@ -594,7 +594,9 @@ def test_the_nearest_is_not_the_one_with_the_nearest_hull(Space):
     space = Space()
     egg = Ellipse(space.static_body, 20, 10)
     space.add(egg)
-    point = max(egg.get_vertices(), key=lambda v: v.y) + Vec2d(0, 3)
+    # Where the hull reaches farthest out: beside its highest corner.
+    corner = max(egg.get_vertices(), key=lambda v: (v.y, v.x)) - Vec2d(0, egg.radius)
+    point = corner + (2 * egg.radius + 3) * Vec2d(0.4, 1).normalized()
     hull = hull_of(egg).point_query(point).distance
     distance = egg.point_query(point).distance
     assert hull < distance

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pymunk
-from pymunk import Shape, Space
+from pymunk import BB, Shape, ShapeFilter, Space
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk._collision_handler import CollisionHandler
 from pymunk._util import _dead_ref
@@ -53,10 +53,29 @@ def pre_solve_function(place: int) -> Any:
     return ffi.cast("cpCollisionPreSolveFunc", place)
 
 
+def box_query_function(place: int) -> Any:
+    """The C function at an address, as queries for the shapes in a box call it."""
+    return ffi.cast("cpSpaceBBQueryFunc", place)
+
+
+def query_box(
+    space: Space, box: BB, shape_filter: ShapeFilter, function: Any, data: int
+) -> None:
+    """Have Chipmunk call a C function with each shape whose bounding box overlaps a box, and with an address."""
+    lib.cpSpaceBBQuery(
+        space._space, box, shape_filter, function, ffi.cast("void *", data)
+    )
+
+
 def shape_behind(cp_shape: Any) -> Shape:
     """The pymunk shape that stands behind a C shape."""
     shape: Shape = ffi.from_handle(lib.cpShapeGetUserData(cp_shape))
     return shape
+
+
+def shape_at_address(place: int) -> Shape:
+    """The pymunk shape that stands behind the C shape at an address."""
+    return shape_behind(ffi.cast("cpShape *", place))
 
 
 def contact_at(pointer: Any) -> Any:

@@ -10,10 +10,18 @@ from __future__ import annotations
 import ctypes
 from typing import Any
 
-from ..narrowphase.cast import Hit, segment_hit
+from ..narrowphase.cast import Hit, crosses_box, segment_hit
 from ..narrowphase.frame import Frame, half_extents, placed
 from ..narrowphase.nearest import Nearest, nearest_point
-from .structs import address, ffi, frame_in, hull_at
+from .structs import (
+    address,
+    ellipse_class,
+    ffi,
+    frame_in,
+    hull_at,
+    ray_at,
+    shape_at,
+)
 
 
 def cache_data(
@@ -60,6 +68,33 @@ def cast_now(
 ) -> Hit:
     """Where a moving circle touches an ellipse first, where its body is now."""
     return segment_hit(frame_now(hull), start_x, start_y, end_x, end_y, radius)
+
+
+def collect_touched(shape_address: int, ray_address: int) -> None:
+    """Add an ellipse to those that a circle touches on its way and Chipmunk overlooks, if it is one of them.
+
+    Those are the ones whose boxes the line of the circle's centre does not cross. Chipmunk calls
+    this for each shape in a box; there is room for all ellipses of the space.
+    """
+    shape = shape_at(shape_address)
+    if shape.klass != ellipse_class():
+        return
+    ray = ray_at(ray_address)
+    start = ray.start
+    end = ray.end
+    bb = shape.bb
+    if crosses_box(
+        bb.left, bb.bottom, bb.right, bb.top, start.x, start.y, end.x, end.y
+    ):
+        return
+    hull = hull_at(shape_address)
+    hit = cast_updated(hull, start.x, start.y, end.x, end.y, ray.radius)
+    if hit[0] <= 1.0:
+        count = ray.count
+        ray.touched[count] = shape_address
+        for i in range(5):
+            ray.hits[5 * count + i] = hit[i]
+        ray.count = count + 1
 
 
 def python_class(polygons: Any) -> int:

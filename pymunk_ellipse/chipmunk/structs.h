@@ -114,6 +114,16 @@ typedef struct {
 typedef struct { intptr_t shape; Vect point; double distance; Vect gradient; } PointQueryInfo;
 typedef struct { intptr_t shape; Vect point, normal; double alpha; } SegmentQueryInfo;
 
+/* The way of a circle, and room for the addresses of the ellipses that it touches and for where: five
+   numbers each, see narrowphase/cast.py. */
+typedef struct {
+    Vect start, end;
+    double radius;
+    int count;
+    intptr_t *touched;
+    double *hits;
+} WideRay;
+
 /* What the compiled library exports. An ellipse is a Hull, a shape any shape of Chipmunk's. Results are
    numbers in a row, as the Python functions of the same name return them. */
 void pe_pre_solve(void *arbiter, void *space, void *data);
@@ -121,6 +131,7 @@ void *pe_shape_class(const void *of_polygons);
 void pe_shape_contact(void *ellipse, void *shape, double *result);
 void pe_nearest_now(void *ellipse, double x, double y, double *result);
 void pe_cast_now(void *ellipse, double start_x, double start_y, double end_x, double end_y, double radius, double *result);
+void pe_collect_touched(void *shape, void *ray);
 void pe_contacts_of_rows(int64_t count, const double *first, int64_t first_step, const double *second, int64_t second_step, double *result);
 void pe_nearest_of_rows(int64_t count, const double *ellipses, int64_t ellipse_step, const double *points, int64_t point_step, double *result);
 const char *pe_digest(void);

@@ -47,6 +47,7 @@ circle_at = _at("Circle")
 segment_at = _at("Segment")
 polygon_at = _at("Poly")
 hull_at = _at("Hull")
+ray_at = _at("WideRay")
 
 
 def behind(doubles: Any, count: int) -> Any:

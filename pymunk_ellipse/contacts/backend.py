@@ -10,9 +10,15 @@ from typing import Any
 
 import pymunk
 
-from ..chipmunk.private import pre_solve_function
+from ..chipmunk.private import box_query_function, pre_solve_function
 from ..chipmunk.proof import prove_structs
-from ..chipmunk.shape_class import cast_now, keep_for_ever, nearest_now, python_class
+from ..chipmunk.shape_class import (
+    cast_now,
+    collect_touched,
+    keep_for_ever,
+    nearest_now,
+    python_class,
+)
 from ..chipmunk.structs import address, ffi, hull_at, set_ellipse_class, shape_at
 from ..narrowphase.cast import Hit
 from ..narrowphase.nearest import Nearest
@@ -34,8 +40,10 @@ class Python:
             pre_solve(arbiter, space)
 
         call = ffi.callback("void(intptr_t, intptr_t, void *)", resolve)
-        keep_for_ever(call)
+        collect = ffi.callback("void(intptr_t, intptr_t)", collect_touched)
+        keep_for_ever((call, collect))
         self.pre_solve = pre_solve_function(address(call))
+        self.collect_touched = box_query_function(address(collect))
 
     def make_class(self, polygons: Any) -> int:
         """Make the class of ellipses from that of polygons; returns its address."""

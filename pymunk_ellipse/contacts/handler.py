@@ -203,7 +203,7 @@ def leave(space: Space) -> None:
         handler.leave()
 
 
-def has_ellipses(space: Space) -> bool:
-    """Whether there are ellipses in a space."""
+def ellipses_in(space: Space) -> int:
+    """How many ellipses there are in a space."""
     handler = contact_handler(space)
-    return handler is not None and handler.ellipses > 0
+    return 0 if handler is None else handler.ellipses

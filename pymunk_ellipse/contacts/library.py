@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from importlib.resources import as_file, files
 from typing import Any
 
-from ..chipmunk.private import pre_solve_function
+from ..chipmunk.private import box_query_function, pre_solve_function
 from ..chipmunk.structs import address, ffi
 from ..narrowphase.cast import Hit
 from ..narrowphase.nearest import Nearest
@@ -63,6 +63,8 @@ class Library:
         self._lib = lib = ffi.dlopen(path)
         place = ffi.addressof(lib, "pe_pre_solve")
         self.pre_solve = pre_solve_function(address(place))
+        place = ffi.addressof(lib, "pe_collect_touched")
+        self.collect_touched = box_query_function(address(place))
 
     def digest(self) -> str:
         """The hash of the sources that it was built from."""

@@ -16,6 +16,43 @@ MISS: Hit = (inf, 0.0, 0.0, 0.0, 0.0)
 MAX_STEPS = 100
 
 
+# A box that a segment crosses is taken to be smaller by this part of the coordinates.
+BOX_ROUNDOFF = 1e-9
+
+
+def crosses_box(
+    left: float,
+    bottom: float,
+    right: float,
+    top: float,
+    start_x: float,
+    start_y: float,
+    end_x: float,
+    end_y: float,
+) -> bool:
+    """Whether a segment crosses a box, by more than roundoff: no line parallel to a side, or to the segment, parts the two.
+
+    >>> crosses_box(0.0, 0.0, 2.0, 1.0, -1.0, 0.5, 3.0, 0.5)
+    True
+    >>> crosses_box(0.0, 0.0, 2.0, 1.0, -1.0, 0.0, 1.0, 3.0)
+    False
+    """
+    size = max(abs(left), abs(bottom), abs(right), abs(top))
+    roundoff = BOX_ROUNDOFF * (size + abs(start_x) + abs(start_y))
+    half_width = (right - left) / 2.0 - roundoff
+    half_height = (top - bottom) / 2.0 - roundoff
+    x = (right + left) / 2.0
+    y = (top + bottom) / 2.0
+    if max(start_x, end_x) < x - half_width or min(start_x, end_x) > x + half_width:
+        return False
+    if max(start_y, end_y) < y - half_height or min(start_y, end_y) > y + half_height:
+        return False
+    dx = end_x - start_x
+    dy = end_y - start_y
+    aside = abs(dx * (y - start_y) - dy * (x - start_x))
+    return aside <= abs(dx) * half_height + abs(dy) * half_width
+
+
 def segment_hit(
     ellipse: Frame,
     start_x: float,

@@ -94,14 +94,49 @@ def outline_errors(seed, count):
     return errors, wrong
 
 
+def size_case(random):
+    """Two ellipses, one of them 100 to 1e6 times as large as the other, that overlap or gape by up to half the smaller's b."""
+    sizes = [1.0, 10.0 ** random.uniform(2, 6)]
+    random.shuffle(sizes)
+    first, second = (
+        Placed(
+            size * 10 ** random.uniform(0, 1), size, 0.0, 0.0, random.uniform(-pi, pi)
+        )
+        for size in sizes
+    )
+    phi = random.uniform(-pi, pi)
+    nx, ny = cos(phi), sin(phi)
+    gap = random.uniform(-0.5, 0.5)
+    px, py = support_point(first, nx, ny)
+    qx, qy = support_point(second, -nx, -ny)
+    return first, second._replace(x=px - qx + gap * nx, y=py - qy + gap * ny)
+
+
+def size_errors(seed, count):
+    """For each of many pairs how far the contact's two points are from where the surfaces have its normal, in semi-axes b of the smaller."""
+    random = np.random.default_rng(seed)
+    errors = np.zeros(count)
+    for i in range(count):
+        first, second = size_case(random)
+        found = contact(first, second)
+        ax, ay = support_point(first, found.nx, found.ny)
+        bx, by = support_point(second, -found.nx, -found.ny)
+        x, y = found.x + found.distance * found.nx, found.y + found.distance * found.ny
+        errors[i] = max(hypot(found.x - ax, found.y - ay), hypot(x - bx, y - by))
+    return errors
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--outlines", type=int, default=1000, metavar="N")
+    parser.add_argument("--sizes", type=int, default=1000, metavar="N")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     errors, wrong = outline_errors(arguments.seed, arguments.outlines)
     print(f"outlines: {arguments.outlines} pairs, {wrong.sum()} decided wrongly")
     print(f"largest error {errors.max():.2g} b, {(errors > 1e-6).sum()} above 1e-6 b")
+    errors = size_errors(arguments.seed, arguments.sizes)
+    print(f"sizes: {arguments.sizes} pairs, points off by {errors.max():.2g} b")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from pathlib import Path
 import brute_force
 import numpy as np
 import pytest
+from exactness import outline_errors, size_errors
 from pairs import (
     Found,
     Placed,
@@ -363,6 +364,59 @@ def test_repeated_vertex_makes_no_difference():
         assert contact(ellipse, repeated)[:3] == pytest.approx(
             contact(ellipse, other)[:3], abs=1e-9
         )
+
+
+def test_vertices_on_edges_make_no_difference():
+    """See exactness.py for more of them."""
+    errors, wrong = outline_errors(81, 1500)
+    assert not wrong.any()
+    assert errors.max() <= 1e-6
+
+
+@pytest.mark.parametrize("far", [0.0, 1e4])
+def test_any_number_of_vertices_on_an_edge(far):
+    random = np.random.default_rng(82)
+    for _ in range(60):
+        angle = random.uniform(-pi, pi)
+        along = np.array([cos(angle), sin(angle)])
+        across = np.array([-along[1], along[0]])
+        place = random.uniform(-1, 1, 2) * far
+        count = int(random.integers(0, 60))
+        parts = np.sort(np.concatenate([[0, 1, 1], random.uniform(0, 1, count)]))
+        vertices = [place + 9 * part * along for part in parts]
+        vertices += [place + 9 * along + 5 * across, place + 5 * across]
+        # Below the first edge.
+        ellipse = Placed(2, 1, 0, 0, random.uniform(-pi, pi))
+        px, py = support_point(ellipse, *across)
+        x, y = place + random.uniform(0.1, 8.9) * along - (px, py) + 0.2 * across
+        square = Round(tuple(map(tuple, np.array(vertices).tolist())))
+        found = contact(ellipse._replace(x=x, y=y), square)
+        assert found.distance == pytest.approx(-0.2, abs=1e-11)
+        assert (found.nx, found.ny) == pytest.approx(tuple(across), abs=1e-9)
+
+
+def test_nearly_straight_corners():
+    """A box with a slight peak in the middle of its top, which is pressed into it."""
+    random = np.random.default_rng(83)
+    for _ in range(400):
+        width = log_uniform(random, 1, 1e4)
+        peak = log_uniform(random, 1e-11, 1e-5) * width / 2
+        height = random.uniform(0.5, 20)
+        corners = ((-width, 0.0), (width, 0.0), (width, height))
+        box = Round((*corners, (0.0, height + peak), (-width, height)))
+        x, y = random.uniform(-0.2, 0.2) * width, height - random.uniform(-1.5, 2)
+        ellipse = Placed(random.uniform(1, 3), 1, x, y, random.uniform(0, 6))
+        found = contact(ellipse, box)
+        normal = np.array([found.nx, found.ny])
+        gap = brute_force.polygon_separation(ellipse, box.vertices, 0.0)(0, *normal)
+        assert found.distance == pytest.approx(gap, abs=1e-15 * width + 1e-14)
+        values, _angles = true_peaks(ellipse, box)
+        assert found.distance == pytest.approx(values.max(), abs=5e-7)
+
+
+def test_small_ellipse_on_a_large_one():
+    """Size ratios of 100 to 1e6; see exactness.py for more of them."""
+    assert size_errors(84, 2000).max() <= 1e-6
 
 
 def test_tiny_radius():

@@ -191,10 +191,13 @@ RESULTS(nearest_now);
 RESULTS(cast_now);
 RESULTS(shape_contact);
 RESULTS(pre_solve);
+RESULTS(contacts_of_rows);
+RESULTS(nearest_of_rows);
 
 static Results *all_results[] = {
     &cache_data_results, &point_query_results, &segment_query_results, &nearest_now_results,
-    &cast_now_results, &shape_contact_results, &pre_solve_results,
+    &cast_now_results, &shape_contact_results, &pre_solve_results, &contacts_of_rows_results,
+    &nearest_of_rows_results,
 };
 
 static void check_queries(AnyShape *any, __typeof__(pe_nearest_now) *nearest_now, __typeof__(pe_cast_now) *cast_now) {
@@ -226,6 +229,7 @@ static void check_queries(AnyShape *any, __typeof__(pe_nearest_now) *nearest_now
 static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies, __typeof__(pe_pre_solve) *pre_solve) {
     Contact contacts[3];
     Arbiter arbiter = {0};
+    Space space = {0};
     int swapped = one_of(2);
     arbiter.shape_a = &any[swapped].shape;
     arbiter.shape_b = &any[!swapped].shape;
@@ -239,7 +243,8 @@ static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies, __typeo
         arbiter.count = 2;
         arbiter.state = step ? 1 : 0;
         arbiter.surface_vr = point(1);
-        pre_solve(&arbiter, 0, 0);
+        space.stamp = step + 1;
+        pre_solve(&arbiter, &space, 0);
         Contact *contact = &contacts[step];
         double numbers[] = {
             arbiter.count, arbiter.state, arbiter.n.x, arbiter.n.y, contact->r1.x, contact->r1.y, contact->r2.x,
@@ -264,6 +269,29 @@ static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies, __typeo
     }
 }
 
+/* The angles are zero: their sines and cosines are the C library's. */
+static void random_row(double *row, Vect center) {
+    double numbers[] = {length(), length(), center.x, center.y, 0};
+    memcpy(row, numbers, sizeof numbers);
+}
+
+static void check_rows(__typeof__(pe_contacts_of_rows) *contacts, __typeof__(pe_nearest_of_rows) *nearest) {
+    enum { COUNT = 16 };
+    double first[5 * COUNT], second[5 * COUNT], points[2 * COUNT], found[7 * COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        Vect off = point(20);
+        random_row(first + 5 * i, point(5));
+        random_row(second + 5 * i, off);
+        memcpy(points + 2 * i, &off, sizeof off);
+    }
+    contacts(COUNT, first, 5, second, 5, found);
+    add(&contacts_of_rows_results, found, 7 * COUNT);
+    for (int i = 0; i < COUNT; i++) contacts_of_rows_results.hits += found[7 * i] <= 0;
+    nearest(COUNT, first, 5, points, 2, found);
+    add(&nearest_of_rows_results, found, 5 * COUNT);
+    for (int i = 0; i < COUNT; i++) nearest_of_rows_results.hits += found[5 * i] <= 0;
+}
+
 int main(int count, char **arguments) {
     Library library = count == 2 ? load(arguments[1]) : 0;
     if (!library) {
@@ -277,7 +305,10 @@ int main(int count, char **arguments) {
     ENTRY(shape_contact);
     ENTRY(nearest_now);
     ENTRY(cast_now);
-    if (!digest || !shape_class || !pre_solve || !shape_contact || !nearest_now || !cast_now) {
+    ENTRY(contacts_of_rows);
+    ENTRY(nearest_of_rows);
+    if (!digest || !shape_class || !pre_solve || !shape_contact || !nearest_now || !cast_now || !contacts_of_rows ||
+        !nearest_of_rows) {
         fprintf(stderr, "selfcheck: %s lacks an entry\n", arguments[1]);
         return 2;
     }
@@ -302,6 +333,7 @@ int main(int count, char **arguments) {
         shape_contact_results.hits += numbers[0] <= 0;
         check_arbiter(any, kinds, bodies, pre_solve);
     }
+    for (int i = 0; i < PAIRS / 16; i++) check_rows(contacts_of_rows, nearest_of_rows);
 
     int failed = 0;
     printf("sources %s\n", digest());

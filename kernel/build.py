@@ -18,7 +18,7 @@ PACKAGE = ROOT / "pymunk_ellipse"
 
 
 class Target(NamedTuple):
-    """A platform that a library is built for: its file, the key of kernel.emit.MACHINES, and what the linker needs."""
+    """A platform that a library is built for: its file, the key of kernel.emit.MACHINES, the target's name for zig, and the C libraries."""
 
     file: str
     system: str
@@ -54,8 +54,18 @@ def system_compiler() -> list[str] | None:
     return named.split() if named else None
 
 
-def build(targets: Sequence[Target]) -> list[Path]:
-    """Build the library for each target; returns their files.
+# What each system's linker is told besides: that nothing may be missing but what the C library has;
+# not to name the file by the folder that it was made in; and not to warn of functions that the
+# header, which cffi reads too, cannot mark for export.
+_SYSTEM_FLAGS = {
+    "linux": ("-fPIC", "-Wl,-z,defs"),
+    "macos": ("-fPIC", "-Wl,-install_name,@rpath/{file}"),
+    "windows": ("-Wno-dll-attribute-on-redeclaration",),
+}
+
+
+def build(targets: Sequence[Target], folder: Path = PACKAGE) -> list[Path]:
+    """Build the library for each target, in the package or another folder; returns their files.
 
     One for this machine is linked by its own C compiler, the others by the registry's (ziglang).
     """
@@ -65,14 +75,18 @@ def build(targets: Sequence[Target]) -> list[Path]:
     whole = module()
     sources = digest(PACKAGE)
     assert sources is not None
-    zig = [sys.executable, "-m", "ziglang", "cc"]
     made = []
     for target in targets:
-        command = [*zig, "-target", target.zig]
+        command = zig_compiler(target)
         if len(targets) == 1:
-            command = system_compiler() or zig
-        made.append(_link(whole, target, command, sources))
+            command = system_compiler() or command
+        made.append(_link(whole, target, command, sources, folder))
     return made
+
+
+def zig_compiler(target: Target) -> list[str]:
+    """The command of the registry's C compiler for a target."""
+    return [sys.executable, "-m", "ziglang", "cc", "-target", target.zig]
 
 
 def target_here() -> Target | None:
@@ -82,19 +96,24 @@ def target_here() -> Target | None:
     return next((target for target in TARGETS if target.file == own), None)
 
 
-def _link(whole: object, target: Target, command: list[str], sources: str) -> Path:
+def _link(
+    whole: object, target: Target, command: list[str], sources: str, folder: Path
+) -> Path:
     from kernel.emit import object_file
 
-    place = PACKAGE / target.file
-    with tempfile.TemporaryDirectory(dir=place.parent) as folder:
-        code = Path(folder, "kernel.o")
+    place = folder / target.file
+    with tempfile.TemporaryDirectory(dir=folder) as temporary:
+        code = Path(temporary, "kernel.o")
         code.write_bytes(object_file(whole, target.system, target.processor))
-        library = Path(folder, place.name)
+        library = Path(temporary, place.name)
         subprocess.run(
             [
                 *command,
                 *("-std=c11", "-O2", "-s", "-shared", "-ffp-contract=off"),
-                *(() if target.system == "windows" else ("-fPIC",)),
+                *(
+                    flag.format(file=target.file)
+                    for flag in _SYSTEM_FLAGS[target.system]
+                ),
                 "-fvisibility=hidden",
                 f"-I{PACKAGE / 'chipmunk'}",
                 f'-DDIGEST="{sources}"',

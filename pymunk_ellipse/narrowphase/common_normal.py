@@ -20,7 +20,7 @@ Scalars go in and come out: the same functions run as they are, and compiled by 
 
 from __future__ import annotations
 
-from math import acos, atan2, cos, pi, sin, sqrt
+from math import sqrt
 
 from .frame import Frame
 
@@ -245,31 +245,59 @@ def sweep(pair: Pair, best: Maximum) -> Maximum:
     _f, nx, ny, _px, _py = best
     noise = ROUNDOFF * (pair[0] + pair[2])
     slack = max(DEPTH_TOLERANCE * smallest_axis(pair), noise)
-    swept = 0.0
+    turned_x = 1.0
+    turned_y = 0.0
     for _ in range(MAX_JUMPS):
         circles = fitted_circles(pair, nx, ny)
         f, slope, _between, _change, nx, ny, _px, _py, _radius, _change1 = circles
         if f > best[0] + noise:
             best = climb(pair, nx, ny)
-        jump = jump_past(f, slope, inscribed_radius(pair, nx, ny), best[0] + slack)
-        swept += jump
-        if best[0] > 0.0 or swept >= 2.0 * pi:
+        cos, sin = jump_past(f, slope, inscribed_radius(pair, nx, ny), best[0] + slack)
+        before_x = turned_x
+        before_y = turned_y
+        turned_x = cos * before_x - sin * before_y
+        turned_y = sin * before_x + cos * before_y
+        if best[0] > 0.0 or not comes_later(turned_x, turned_y, before_x, before_y):
             break
-        nx, ny = nx * cos(jump) - ny * sin(jump), ny * cos(jump) + nx * sin(jump)
+        nx, ny = cos * nx - sin * ny, sin * nx + cos * ny
     return best
 
 
-def jump_past(f: float, slope: float, radius: float, ceiling: float) -> float:
-    """The largest angle (radians) that n may turn by, counterclockwise, and f stays below the ceiling for certain.
+def jump_past(
+    f: float, slope: float, radius: float, ceiling: float
+) -> tuple[float, float]:
+    """The cosine and sine of the largest angle that n may turn by, counterclockwise, and f stays below the ceiling for certain.
 
     A disc of the given radius that touches the Minkowski sum of the two from within, where its
     normal is n, bounds the sum's support function from below, so that
 
         f(n turned by phi) <= (f + radius) cos phi + f' sin phi - radius
+
+    A full turn is (1, 0). There are no angles in it: the C libraries' functions of them differ
+    from platform to platform in the last bits, products and roots do not.
     """
     height = f + radius
     reach = sqrt(height * height + slope * slope)
     if ceiling + radius >= reach:
-        return 2.0 * pi
-    jump = atan2(slope, height) - acos(max(-1.0, (ceiling + radius) / reach))
-    return jump if jump >= 0.0 else jump + 2.0 * pi
+        return 1.0, 0.0
+    peak_x = height / reach
+    peak_y = slope / reach
+    level = max(-1.0, (ceiling + radius) / reach)
+    half_width = sqrt((1.0 - level) * (1.0 + level))
+    return (
+        peak_x * level + peak_y * half_width,
+        peak_y * level - peak_x * half_width,
+    )
+
+
+def comes_later(mx: float, my: float, nx: float, ny: float) -> bool:
+    """Whether m comes after n on the way around from (1, 0), counterclockwise.
+
+    >>> comes_later(0.0, 1.0, 1.0, 0.0), comes_later(1.0, 0.0, 0.0, 1.0)
+    (True, False)
+    """
+    m_is_above = my > 0.0 or (my == 0.0 and mx > 0.0)
+    n_is_above = ny > 0.0 or (ny == 0.0 and nx > 0.0)
+    if m_is_above != n_is_above:
+        return n_is_above
+    return nx * my - ny * mx > 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, pi, sin, sqrt
+from math import sqrt
 
 from .common_normal import (
     DEPTH_TOLERANCE,
@@ -11,6 +11,7 @@ from .common_normal import (
     ROUNDOFF,
     TINY,
     climb,
+    comes_later,
     jump_past,
 )
 from .ellipse_ellipse import Contact, ellipse_ellipse, turned
@@ -174,7 +175,8 @@ def sweep_polygon(
     if best[0] >= -(b * b / (px * nx + py * ny) + radius):
         return best, feature
     slack = max(DEPTH_TOLERANCE * b, noise)
-    swept = 0.0
+    turned_x = 1.0
+    turned_y = 0.0
     for _ in range(MAX_JUMPS):
         i = nearest_vertex(planes, count, nx, ny)
         contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
@@ -182,11 +184,14 @@ def sweep_polygon(
         if f > best[0] + noise:
             best, feature = climb_polygon(ellipse, planes, count, radius, nx, ny)
         inscribed = b * b / (px * nx + py * ny) + radius
-        jump = jump_past(f, slope, inscribed, best[0] + slack)
-        swept += jump
-        if best[0] > 0.0 or swept >= 2.0 * pi:
+        cos, sin = jump_past(f, slope, inscribed, best[0] + slack)
+        before_x = turned_x
+        before_y = turned_y
+        turned_x = cos * before_x - sin * before_y
+        turned_y = sin * before_x + cos * before_y
+        if best[0] > 0.0 or not comes_later(turned_x, turned_y, before_x, before_y):
             break
-        nx, ny = nx * cos(jump) - ny * sin(jump), ny * cos(jump) + nx * sin(jump)
+        nx, ny = cos * nx - sin * ny, sin * nx + cos * ny
     return best, feature
 
 

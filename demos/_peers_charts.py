@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,22 +23,14 @@ from ._peers_pairs import (
 from ._peers_scenes import Engine, Seen, period_off, swing_off
 from ._picture import OUTLINE
 
-# By the first word of a method's or an engine's family.
-COLORS = {
-    OURS: "C3",
-    "pymunk": "C0",
-    "Box2D": "C9",
-    "MuJoCo": "C1",
-    "coal": "C2",
-    "fcl": "C4",
-}
-MARKERS = {
-    OURS: "*",
-    "pymunk": "s",
-    "Box2D": "D",
-    "MuJoCo": "^",
-    "coal": "o",
-    "fcl": "v",
+# Colour and marker, by the first word of a method's or an engine's family.
+STYLES = {
+    OURS: ("C3", "*"),
+    "pymunk": ("C0", "s"),
+    "Box2D": ("C9", "D"),
+    "MuJoCo": ("C1", "^"),
+    "coal": ("C2", "o"),
+    "fcl": ("C4", "v"),
 }
 # What cannot be told from roundoff is drawn here.
 ROUNDOFF = 1e-15
@@ -45,8 +38,49 @@ ROUNDOFF = 1e-15
 Accuracy = Callable[[PairScore], tuple[float, float]]
 
 
-def kind(family: str) -> str:
-    return family.partition(",")[0]
+def style(family: str, hollow: bool = False) -> dict[str, Any]:
+    color, marker = STYLES[family.partition(",")[0]]
+    return {
+        "color": color,
+        "marker": marker,
+        "markersize": 12 if family == OURS else 6,
+        "markerfacecolor": "white" if hollow else color,
+        "linestyle": "",
+        "zorder": 3,
+    }
+
+
+def color_of(family: str) -> str:
+    return STYLES[family.partition(",")[0]][0]
+
+
+def tidy(axes: Axes) -> None:
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(color="0.93")
+    axes.set_axisbelow(True)
+
+
+def families(names: Iterable[str]) -> list[Line2D]:
+    """Entries of a legend, each family once."""
+    return [
+        Line2D([], [], label=family, **style(family)) for family in dict.fromkeys(names)
+    ]
+
+
+def calls_and_none() -> list[Line2D]:
+    """Entries of a legend for filled and hollow marks."""
+    labels = {"0.4": "without the cost of a call", "white": "as called from Python"}
+    return [
+        Line2D(
+            *([], []),
+            color="0.4",
+            marker="o",
+            markerfacecolor=face,
+            linestyle="",
+            label=label,
+        )
+        for face, label in labels.items()
+    ]
 
 
 def draw_pairs(table: dict[Case, PairScores]) -> Figure:
@@ -63,43 +97,31 @@ def draw_pairs(table: dict[Case, PairScores]) -> Figure:
     for row, accuracy, label in zip(rows[:2], accuracies, labels, strict=True):
         for axes, scores in zip(row, table.values(), strict=True):
             for method, found in scores.items():
-                draw_errors(axes, method, found, accuracy(found))
+                typical, worst = (max(off, ROUNDOFF) for off in accuracy(found))
+                draw_worst(axes, method, found, typical, worst)
+                draw_times(axes, method, found, typical)
+            number(axes, {m: (1e6 * f.bare, accuracy(f)[0]) for m, f in scores.items()})
             axes.set_yscale("log")
         row[0].set_ylabel(label)
     for axes, scores in zip(rows[2], table.values(), strict=True):
         for method, found in scores.items():
             part = (found.missed + found.wrong) / found.count
-            draw_mark(axes, method, 1e6 * found.bare, part)
-            draw_mark(axes, method, 1e6 * found.called, part, hollow=True)
+            draw_times(axes, method, found, part)
         axes.set_xlabel("microseconds per pair")
-        axes.yaxis.set_major_formatter(PercentFormatter(1.0))
         axes.set_xscale("log")
+        axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     rows[2][0].set_ylabel("missed or wrong")
     for axes, case in zip(rows[0], table, strict=True):
         axes.set_title(str(case), fontsize="medium")
     for axes in rows.flat:
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color="0.93")
-        axes.set_axisbelow(True)
-    families = dict.fromkeys(m.family for scores in table.values() for m in scores)
-    handles = [
-        Line2D([], [], linestyle="", label=family, **style(family))
-        for family in families
-    ]
-    handles += [
-        Line2D([], [], color="0.4", marker="o", linestyle="", label="without the call"),
-        Line2D(
-            [],
-            [],
-            color="0.4",
-            marker="o",
-            markerfacecolor="white",
-            linestyle="",
-            label="as called from Python",
-        ),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    count = next(iter(next(iter(table.values())).values())).count
+        tidy(axes)
+    scores = next(iter(table.values()))
+    figure.legend(
+        handles=families(method.family for method in scores) + calls_and_none(),
+        loc="outside lower center",
+        ncols=4,
+    )
+    count = next(iter(scores.values())).count
     figure.suptitle(
         f"The contact of two ellipses: {count} pairs in each column. Marks: median; the line ends at the worst pair. "
         "Left and low is better.\nNumbers: vertices of a polygon, or iterations of a search. Wrong: depth off by more than "
@@ -109,120 +131,130 @@ def draw_pairs(table: dict[Case, PairScores]) -> Figure:
     return figure
 
 
-def style(family: str, hollow: bool = False) -> dict[str, object]:
-    color = COLORS[kind(family)]
-    return {
-        "color": color,
-        "marker": MARKERS[kind(family)],
-        "markersize": 12 if family == OURS else 6,
-        "markerfacecolor": "white" if hollow else color,
-    }
-
-
-def draw_mark(
-    axes: Axes, method: PairMethod, x: float, y: float, hollow: bool = False
-) -> None:
-    axes.plot(x, y, linestyle="", zorder=3, **style(method.family, hollow))
-
-
-def draw_errors(
-    axes: Axes, method: PairMethod, found: PairScore, off: tuple[float, float]
-) -> None:
-    typical, worst = (max(error, ROUNDOFF) for error in off)
+def draw_times(axes: Axes, method: PairMethod, found: PairScore, y: float) -> None:
+    """A pair's time with the call and without."""
     bare, called = 1e6 * found.bare, 1e6 * found.called
-    color = COLORS[kind(method.family)]
-    axes.plot([bare, called], [typical] * 2, color=color, linewidth=0.6, linestyle=":")
-    axes.plot([bare] * 2, [typical, worst], color=color, linewidth=1.0, alpha=0.7)
+    color = color_of(method.family)
+    axes.plot([bare, called], [y, y], color=color, linewidth=0.6, linestyle=":")
+    axes.plot(called, y, **style(method.family, hollow=True))
+    axes.plot(bare, y, **style(method.family))
+
+
+def draw_worst(
+    axes: Axes, method: PairMethod, found: PairScore, typical: float, worst: float
+) -> None:
+    bare = 1e6 * found.bare
+    color = color_of(method.family)
+    axes.plot([bare, bare], [typical, worst], color=color, linewidth=1.0, alpha=0.7)
     axes.plot(bare, worst, color=color, marker="_", markersize=6)
-    draw_mark(axes, method, called, typical, hollow=True)
-    draw_mark(axes, method, bare, typical)
-    if method.number:
-        axes.annotate(
-            str(method.number),
-            (bare, typical),
-            (0, -11),
-            textcoords="offset points",
-            ha="center",
-            fontsize="xx-small",
-            color=color,
-        )
+
+
+def number(axes: Axes, places: dict[PairMethod, tuple[float, float]]) -> None:
+    """Write the methods' numbers below their marks, to the left and the right in turn."""
+    for turn, (method, place) in enumerate(places.items()):
+        if method.number:
+            write(axes, place, str(method.number), method.family, turn % 2 == 1)
+
+
+def write(
+    axes: Axes, place: tuple[float, float], text: str, family: str, left: bool
+) -> None:
+    axes.annotate(
+        text,
+        place,
+        (2 if left else -2, -12),
+        textcoords="offset points",
+        ha="right" if left else "left",
+        fontsize="x-small",
+        color=color_of(family),
+    )
 
 
 def draw_scenes(seen: dict[Engine, Seen]) -> Figure:
     """A row for each engine, a column for each thing seen."""
-    figure = Figure(figsize=(14.0, 5.2), layout="constrained")
-    panels = figure.subplots(1, 6, sharey=True)
-    names = [str(engine) for engine in seen]
-    tilts = rocking.TILTS
-    rates = list(next(iter(seen.values())).gas)
-    many = "o", "s", "^"
-    for row, (engine, found) in enumerate(seen.items()):
-        color = COLORS[engine.family]
-        panels[0].plot(found.milliseconds, row, "o", color=color)
-        panels[0].annotate(
-            f"{found.milliseconds:.2g}",
-            (found.milliseconds, row),
-            (6, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize="small",
-        )
-        panels[1].plot(max(found.restless, 1e-12), row, "o", color=color)
-        if found.outside:
-            panels[1].annotate(
-                f"{found.outside} left the box",
-                (max(found.restless, 1e-12), row),
-                (0, 6),
-                textcoords="offset points",
-                ha="center",
-                fontsize="x-small",
-            )
-        typical, worst = found.overlap
-        if worst > 0.0:
-            panels[2].plot([typical, worst], [row, row], color=color)
-            panels[2].plot(typical, row, "o", color=color)
-        else:
-            note(panels[2], row, "none")
-        for tilt, marker in zip(tilts, many, strict=True):
-            swing = found.rocking.get(tilt)
-            if swing is not None:
-                panels[4].plot(swing.amplitude_kept, row, marker, color=color)
-                error = period_off(found, tilt)
-                if error is not None:
-                    panels[3].plot(abs(error), row, marker, color=color)
-        if not found.rocking:
-            note(panels[3], row, "rolls")
-            note(panels[4], row, "rolls")
-        elif all(swing.period is None for swing in found.rocking.values()):
-            note(panels[3], row, "does not rock")
-        for rate, marker in zip(rates, many, strict=False):
-            panels[5].plot(
-                min(max(found.gas[rate], 1e-3), 1e3), row, marker, color=color
-            )
-    titles = (
-        "pile at rest:\nms per step",
-        "pile: kinetic energy left\n(as a height, in b)",
-        "pile: overlap (in b),\nmean to worst",
-        "rocking:\nperiod off by",
-        "rocking:\nswing kept after 10 s",
-        "elastic gas:\nenergy left after 10 s",
+    figure = Figure(figsize=(14.0, 5.4), layout="constrained")
+    panels = dict(
+        zip(TITLES, figure.subplots(1, len(TITLES), sharey=True), strict=True)
     )
-    for axes, title in zip(panels, titles, strict=True):
-        axes.set_title(title, fontsize="medium")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(axis="both", color="0.93")
-        axes.set_axisbelow(True)
-        axes.set_xscale("log")
-    panels[0].set_xlim(right=4.0 * max(found.milliseconds for found in seen.values()))
-    panels[4].set_xscale("linear")
-    panels[4].xaxis.set_major_formatter(PercentFormatter(1.0))
-    panels[5].axvline(1.0, color=OUTLINE, linewidth=0.8)
-    panels[0].set_yticks(range(len(names)), names)
-    panels[0].invert_yaxis()
+    rates = list(next(iter(seen.values())).gas)
+    for row, (engine, found) in enumerate(seen.items()):
+        color = color_of(engine.family)
+        panels["time"].plot(found.milliseconds, row, "o", color=color)
+        note(panels["time"], found.milliseconds, row, f"{found.milliseconds:.2g}")
+        panels["energy"].plot(found.restless, row, "o", color=color)
+        if found.outside:
+            text = f"{found.outside} left the box"
+            note(panels["energy"], found.restless, row, text)
+        mean, worst = found.overlap
+        if worst > 0.0:
+            panels["overlap"].plot([mean, worst], [row, row], color=color)
+            panels["overlap"].plot(mean, row, "o", color=color)
+        else:
+            say(panels["overlap"], row, "none")
+        for tilt, marker in zip(rocking.TILTS, MARKERS, strict=True):
+            if tilt in found.rocking:
+                kept = found.rocking[tilt].amplitude_kept
+                panels["swing"].plot(kept, row, marker, color=color)
+            if (error := period_off(found, tilt)) is not None:
+                panels["period"].plot(abs(error), row, marker, color=color)
+        if not found.rocking:
+            for name in "period", "swing":
+                say(panels[name], row, "rolls away")
+        elif all(swing.period is None for swing in found.rocking.values()):
+            say(panels["period"], row, "does not rock")
+        for rate, marker in zip(rates, MARKERS, strict=False):
+            panels["gas"].plot(found.gas[rate], row, marker, color=color)
+    for name, axes in panels.items():
+        axes.set_title(TITLES[name], fontsize="medium")
+        axes.set_xscale("linear" if name == "swing" else "log")
+        tidy(axes)
+        axes.margins(x=0.25 if name == "time" else 0.1)
+    panels["swing"].xaxis.set_major_formatter(PercentFormatter(1.0))
+    panels["gas"].axvline(1.0, color=OUTLINE, linewidth=0.8)
+    panels["time"].set_yticks(range(len(seen)), map(str, seen))
+    panels["time"].invert_yaxis()
+    labels = {
+        "rocking, let go at": [f"{tilt:g} rad" for tilt in rocking.TILTS],
+        "gas, steps of": [f"1/{rate} s" for rate in rates],
+    }
+    handles = []
+    for title, names in labels.items():
+        handles.append(Line2D([], [], linestyle="", label=title))
+        handles += [
+            Line2D([], [], color="0.4", linestyle="", marker=marker, label=name)
+            for marker, name in zip(MARKERS, names, strict=False)
+        ]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False
+    )
     return figure
 
 
-def note(axes: Axes, row: int, text: str) -> None:
+MARKERS = "o", "s", "^"
+TITLES = {
+    "time": "pile at rest:\nms per step",
+    "energy": "pile: kinetic energy left\n(as a height, in b)",
+    "overlap": "pile: overlap (in b),\nmean to worst",
+    "period": "rocking:\nperiod off by",
+    "swing": "rocking:\nswing kept after 10 s",
+    "gas": "elastic gas after 10 s:\nenergy / that at the start",
+}
+
+
+def note(axes: Axes, x: float, row: int, text: str) -> None:
+    """Write beside a mark."""
+    axes.annotate(
+        text,
+        (x, row),
+        (6, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize="small",
+    )
+
+
+def say(axes: Axes, row: int, text: str) -> None:
+    """Write in place of a mark."""
     axes.annotate(
         text,
         (0.5, row),
@@ -234,29 +266,38 @@ def note(axes: Axes, row: int, text: str) -> None:
     )
 
 
-def draw_small(scores: PairScores, seen: dict[Engine, Seen]) -> Figure:
+def draw_small(case: Case, scores: PairScores, seen: dict[Engine, Seen]) -> Figure:
     """What the README shows: one case of the pairs, and the pile's cost against how well an ellipse rocks."""
-    figure = Figure(figsize=(8.4, 3.8), layout="constrained")
+    figure = Figure(figsize=(8.6, 4.2), layout="constrained")
     pairs, scenes = figure.subplots(1, 2)
     for method, found in scores.items():
-        place = 1e6 * found.bare, max(found.normal)
-        draw_mark(pairs, method, *place)
-        label(pairs, place, method.label)
+        draw_times(pairs, method, found, found.normal[1])
+    number(pairs, {m: (1e6 * f.bare, f.normal[1]) for m, f in scores.items()})
+    pairs.set_title(f"contact of two ellipses, aspect ratio {case.aspect_ratio:g}")
     pairs.set_xlabel("microseconds per pair")
     pairs.set_ylabel("normal off by at most (radians)")
-    for engine, found in seen.items():
-        if (lost := swing_off(found)) is not None:
-            place = found.milliseconds, lost
-            scenes.plot(*place, linestyle="", **style(engine.family))
-            label(scenes, place, str(engine))
-    scenes.set_xlabel("ms per step of a pile")
-    scenes.set_ylabel("swing lost or gained by a rocking one in 10 s")
+    for turn, (engine, found) in enumerate(seen.items()):
+        off = swing_off(found)
+        if off is None:
+            continue
+        scenes.plot(found.milliseconds, off, **style(engine.family))
+        if engine.family != OURS:
+            place = found.milliseconds, off
+            short = engine.shape.removesuffix("-gons").removeprefix("ellipsoids, ")
+            write(scenes, place, short, engine.family, turn % 2 == 1)
+    scenes.set_title("many in a pile, one rocking on the floor")
+    scenes.margins(x=0.2)
+    scenes.set_xlabel("ms per step of the pile")
+    scenes.set_ylabel("swing lost or gained in 10 s")
     for axes in pairs, scenes:
+        axes.title.set_fontsize("medium")
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.spines[["top", "right"]].set_visible(False)
+        tidy(axes)
+    figure.legend(
+        handles=families(method.family for method in scores) + calls_and_none(),
+        loc="outside lower center",
+        ncols=4,
+        fontsize="small",
+    )
     return figure
-
-
-def label(axes: Axes, place: tuple[float, float], text: str) -> None:
-    axes.annotate(text, place, (6, 3), textcoords="offset points", fontsize="x-small")

@@ -56,7 +56,7 @@ def run(out: Path, quick: bool) -> None:
     read_scenes(seen)
     save(draw_pairs(table), out / "peers.png", dpi=110)
     save(draw_scenes(seen), out / "peers_scenes.png", dpi=110)
-    save(draw_small(table[CASES[0]], seen), out / "peers_small.png", dpi=110)
+    save(draw_small(CASES[0], table[CASES[0]], seen), out / "peers_small.png", dpi=110)
 
 
 def installed() -> list[ModuleType]:

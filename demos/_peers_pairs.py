@@ -219,19 +219,29 @@ def errors(found: Floats, pairs: Pairs) -> tuple[Floats, Floats, int, int]:
 def methods_of_pymunk() -> list[PairMethod]:
     """The package's own contact, and pymunk's of polygons inside the ellipses."""
     return [
-        PairMethod(OURS, 0, exact),
+        PairMethod(OURS, 0, by(Ellipse.shapes_collide)),
+        PairMethod(f"{OURS}, distance", 0, by(Ellipse.distance)),
         *(PairMethod(POLYGONS, count, polygons(count)) for count in POLYGON_COUNTS),
     ]
 
 
-def exact(pairs: Pairs) -> Prepared:
-    """In a compiled loop: ellipse_contacts. As called from Python: Ellipse.shapes_collide."""
-    first, second = placed(pairs)
-    contacts = ellipse_contacts(first, second)
-    found = np.pad(contacts.normal, ((0, 0), (1, 1)))
-    found[:, 0] = -contacts.distance
-    ellipses = InPymunk(pairs, Ellipse)
-    return Prepared(found, ellipses.collide, lambda: ellipse_contacts(first, second))
+def by(call: Callable[..., object]) -> Callable[[Pairs], Prepared]:
+    """In a compiled loop: ellipse_contacts. As called from Python: a method of an ellipse."""
+
+    def prepare(pairs: Pairs) -> Prepared:
+        first, second = placed(pairs)
+        contacts = ellipse_contacts(first, second)
+        found = np.pad(contacts.normal, ((0, 0), (1, 1)))
+        found[:, 0] = -contacts.distance
+        ellipses = InPymunk(pairs, Ellipse)
+
+        def calls() -> None:
+            for one, two in ellipses.shapes:
+                call(one, two)
+
+        return Prepared(found, calls, lambda: ellipse_contacts(first, second))
+
+    return prepare
 
 
 class InPymunk:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -12,6 +13,7 @@ from matplotlib.ticker import PercentFormatter
 
 from . import rocking
 from ._peers_pairs import (
+    DISTANCE,
     OURS,
     WRONG_DEPTH,
     WRONG_NORMAL,
@@ -150,10 +152,13 @@ def draw_worst(
 
 
 def number(axes: Axes, places: dict[PairMethod, tuple[float, float]]) -> None:
-    """Write the methods' numbers below their marks, to the left and the right in turn."""
-    for turn, (method, place) in enumerate(places.items()):
+    """Write the methods' numbers below their marks, in a family to the left and the right in turn."""
+    before = Counter[str]()
+    for method, place in places.items():
         if method.number:
-            write(axes, place, str(method.number), method.family, turn % 2 == 1)
+            left = before[method.family] % 2 == 0
+            write(axes, place, str(method.number), method.family, left)
+            before[method.family] += 1
 
 
 def write(
@@ -270,32 +275,39 @@ def draw_small(case: Case, scores: PairScores, seen: dict[Engine, Seen]) -> Figu
     """What the README shows: one case of the pairs, and the pile's cost against how well an ellipse rocks."""
     figure = Figure(figsize=(8.6, 4.2), layout="constrained")
     pairs, scenes = figure.subplots(1, 2)
-    for method, found in scores.items():
+    shown = {m: found for m, found in scores.items() if m.family != DISTANCE}
+    for method, found in shown.items():
         draw_times(pairs, method, found, found.normal[1])
-    number(pairs, {m: (1e6 * f.bare, f.normal[1]) for m, f in scores.items()})
+    number(pairs, {m: (1e6 * f.bare, f.normal[1]) for m, f in shown.items()})
     pairs.set_title(f"contact of two ellipses, aspect ratio {case.aspect_ratio:g}")
     pairs.set_xlabel("microseconds per pair")
     pairs.set_ylabel("normal off by at most (radians)")
-    for turn, (engine, found) in enumerate(seen.items()):
-        off = swing_off(found)
-        if off is None:
-            continue
-        scenes.plot(found.milliseconds, off, **style(engine.family))
-        if engine.family != OURS:
-            place = found.milliseconds, off
+    rocks = {
+        engine: off
+        for engine, found in seen.items()
+        if (off := swing_off(found)) is not None
+    }
+    many = Counter(engine.family for engine in rocks)
+    before = Counter[str]()
+    for engine, off in rocks.items():
+        place = seen[engine].milliseconds, off
+        scenes.plot(*place, **style(engine.family))
+        if many[engine.family] > 1:
             short = engine.shape.removesuffix("-gons").removeprefix("ellipsoids, ")
-            write(scenes, place, short, engine.family, turn % 2 == 1)
+            left = before[engine.family] % 2 == 0
+            write(scenes, place, short, engine.family, left)
+            before[engine.family] += 1
     scenes.set_title("many in a pile, one rocking on the floor")
-    scenes.margins(x=0.2)
     scenes.set_xlabel("ms per step of the pile")
     scenes.set_ylabel("swing lost or gained in 10 s")
+    scenes.margins(x=0.2)
     for axes in pairs, scenes:
         axes.title.set_fontsize("medium")
         axes.set_xscale("log")
         axes.set_yscale("log")
         tidy(axes)
     figure.legend(
-        handles=families(method.family for method in scores) + calls_and_none(),
+        handles=families(method.family for method in shown) + calls_and_none(),
         loc="outside lower center",
         ncols=4,
         fontsize="small",

@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 Work = Callable[[], object]
 
 OURS = "pymunk_ellipse"
+DISTANCE = f"{OURS}, distance"
 POLYGONS = "pymunk, polygons"
 POLYGON_COUNTS = 8, 16, 32, 64
 
@@ -220,7 +221,7 @@ def methods_of_pymunk() -> list[PairMethod]:
     """The package's own contact, and pymunk's of polygons inside the ellipses."""
     return [
         PairMethod(OURS, 0, by(Ellipse.shapes_collide)),
-        PairMethod(f"{OURS}, distance", 0, by(Ellipse.distance)),
+        PairMethod(DISTANCE, 0, by(Ellipse.distance)),
         *(PairMethod(POLYGONS, count, polygons(count)) for count in POLYGON_COUNTS),
     ]
 

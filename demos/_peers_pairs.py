@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 from tqdm import tqdm
 
-from pymunk_ellipse import Ellipse
+from pymunk_ellipse import Ellipse, ellipse_contacts
 
-from ._ellipse_contacts import ellipse_contacts
 from ._methods import Pairs, random_pairs
 from ._race import CLOCK
 from ._shapes import inscribed_polygon

@@ -226,7 +226,7 @@ def methods_of_pymunk() -> list[PairMethod]:
 
 
 def by(call: Callable[..., object]) -> Callable[[Pairs], Prepared]:
-    """In a compiled loop: ellipse_contacts. As called from Python: a method of an ellipse."""
+    """In a compiled loop: ellipse_contacts, less that of a single pair. As called from Python: a method of an ellipse."""
 
     def prepare(pairs: Pairs) -> Prepared:
         first, second = placed(pairs)
@@ -239,7 +239,12 @@ def by(call: Callable[..., object]) -> Callable[[Pairs], Prepared]:
             for one, two in ellipses.shapes:
                 call(one, two)
 
-        return Prepared(found, calls, lambda: ellipse_contacts(first, second))
+        return Prepared(
+            found,
+            calls,
+            lambda: ellipse_contacts(first, second),
+            lambda: ellipse_contacts(first[:1], second[:1]),
+        )
 
     return prepare
 

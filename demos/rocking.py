@@ -52,22 +52,29 @@ def analytic_period(tilt: float, nodes: int = 64) -> float:
 
 def rock(make_shape: MakeShape, tilt: float) -> NDArray[np.float64]:
     """The angle of a shape after each step from its release at rest on a floor."""
-    space = pymunk.Space()
-    space.gravity = 0.0, -GRAVITY
-    floor = pymunk.Segment(space.static_body, (-10.0 * A, 0.0), (10.0 * A, 0.0), 0.0)
-    body = pymunk.Body()
-    shape = make_shape(body)
-    # Enough friction that nothing slips.
-    floor.friction = shape.friction = 1e3
-    shape.mass = 1.0
-    body.angle = tilt
-    body.position = 0.0, lowest_height(shape)
-    space.add(floor, body, shape)
+    space, body = scene(make_shape, tilt)
     angles = [tilt]
     for _ in range(round(DURATION / STEP)):
         space.step(STEP)
         angles.append(body.angle)
     return np.array(angles)
+
+
+def scene(
+    make_shape: MakeShape, tilt: float, friction: float = 1e3
+) -> tuple[pymunk.Space, pymunk.Body]:
+    """A shape at rest on a floor, about to rock, with enough friction that nothing slips."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -GRAVITY
+    floor = pymunk.Segment(space.static_body, (-10.0 * A, 0.0), (10.0 * A, 0.0), 0.0)
+    body = pymunk.Body()
+    shape = make_shape(body)
+    floor.friction = shape.friction = friction
+    shape.mass = 1.0
+    body.angle = tilt
+    body.position = 0.0, lowest_height(shape)
+    space.add(floor, body, shape)
+    return space, body
 
 
 def lowest_height(shape: pymunk.Shape) -> float:

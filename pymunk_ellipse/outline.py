@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import asin, ceil, cos, pi, sin, sqrt
 
 from pymunk import Transform, Vec2d
@@ -36,19 +37,23 @@ def outline_vertices(
     long_axis = transform @ Vec2d(x + longer * c, y + longer * s) - center
     short_axis = transform @ Vec2d(x - shorter * s, y + shorter * c) - center
     first, second = (long_axis, short_axis) if from_longer else (-short_axis, long_axis)
-    count = vertices_for(max(first.length, second.length))
-    step = 2.0 * pi / count
-    vertices = []
-    for i in range(count):
-        cosine = cos(i * step)
-        sine = sin(i * step)
-        vertices.append(
-            Vec2d(
-                center.x + cosine * first.x + sine * second.x,
-                center.y + cosine * first.y + sine * second.y,
-            )
+    center_x, center_y = center
+    first_x, first_y = first
+    second_x, second_y = second
+    return [
+        Vec2d(
+            center_x + cosine * first_x + sine * second_x,
+            center_y + cosine * first_y + sine * second_y,
         )
-    return vertices
+        for cosine, sine in directions(vertices_for(max(first.length, second.length)))
+    ]
+
+
+@lru_cache
+def directions(count: int) -> list[tuple[float, float]]:
+    """Unit vectors all round, so many, from x on."""
+    step = 2.0 * pi / count
+    return [(cos(i * step), sin(i * step)) for i in range(count)]
 
 
 def vertices_for(size: float) -> int:

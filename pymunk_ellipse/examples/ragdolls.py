@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, show
+from pymunk_ellipse.examples.stage import Scene, main
 
 DENSITY = 0.01
 # Semi-axes and centre of each limb, then the limb it hangs on, where, and how far it may turn.
@@ -83,4 +80,5 @@ class Ragdolls(Scene):
         }
 
 
-run = partial(show, Ragdolls)
+if __name__ == "__main__":
+    main(Ragdolls)

@@ -1,0 +1,97 @@
+"""A scene in a window, with the mouse and the keys."""
+
+from __future__ import annotations
+
+import pygame
+
+from .canvas import OUTLINE, Canvas, font, size_for
+from .scene import STEP, Scene
+
+FRAMES_PER_SECOND = 60
+STEPS_PER_FRAME = round(1.0 / FRAMES_PER_SECOND / STEP)
+# Pixels of the scene's longer side when the window opens.
+SIZE = 900
+KEYS = "N: next step     R: restart     Esc: close"
+BAR = "#e4e0d6"
+LINE_HEIGHT = 24
+LARGEST_FONT = 22
+
+
+def open_window(make: type[Scene], frames: int | None = None) -> Scene:
+    """Run a scene until its window is closed, or for so many frames.
+
+    Space stops the clock and starts it again, N lets it go one step on, R starts the scene
+    again, Escape closes the window. The window can be made larger and smaller.
+    """
+    pygame.display.init()
+    lines = 1 + bool(make.hint)
+    width, height = size_for(make.view, SIZE)
+    screen = open_screen(width, height + LINE_HEIGHT * lines)
+    pygame.display.set_caption(make.__name__)
+    clock = pygame.time.Clock()
+    scene = make()
+    canvas: Canvas | None = None
+    size = screen.get_size()
+    running = True
+    while frames is None or frames > 0:
+        frames = None if frames is None else frames - 1
+        screen = pygame.display.get_surface() or screen
+        if canvas is None or screen.get_size() != size:
+            size = screen.get_size()
+            room = max(1, size[1] - LINE_HEIGHT * lines)
+            canvas = Canvas(make.view, (size[0], room))
+        steps = STEPS_PER_FRAME if running else 0
+        for event in pygame.event.get():
+            key = event.key if event.type == pygame.KEYDOWN else None
+            if event.type == pygame.QUIT or key == pygame.K_ESCAPE:
+                frames = 0
+            elif key == pygame.K_r:
+                scene, canvas = make(), Canvas(make.view, (size[0], room))
+            elif key == pygame.K_SPACE:
+                running = not running
+            elif key == pygame.K_n:
+                running, steps = False, 1
+            elif event.type in (pygame.KEYDOWN, pygame.KEYUP):
+                name = pygame.key.name(event.key)
+                scene.key(name, event.type == pygame.KEYDOWN)
+            elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+                scene.press(canvas.world(event.pos))
+            elif event.type == pygame.MOUSEMOTION:
+                scene.drag(canvas.world(event.pos))
+            elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
+                scene.release()
+        for _ in range(steps):
+            scene.step()
+        scene.draw(canvas)
+        screen.blit(canvas.finish(), (0, 0))
+        clock_key = "Space: pause" if running else "PAUSED     Space: go on"
+        keys = f"{clock_key}     {KEYS}"
+        draw_hints(screen, [make.hint, keys] if make.hint else [keys])
+        pygame.display.flip()
+        clock.tick(FRAMES_PER_SECOND)
+    pygame.display.quit()
+    return scene
+
+
+def open_screen(width: int, height: int) -> pygame.Surface:
+    """A window of this size, or an end with a clear word where there is no screen."""
+    try:
+        return pygame.display.set_mode((width, height), pygame.RESIZABLE)
+    except pygame.error as error:
+        raise SystemExit(
+            f"A window cannot be opened ({error}). Without --window a picture and an animation are left."
+        ) from None
+
+
+def draw_hints(screen: pygame.Surface, hints: list[str]) -> None:
+    """Write the hints below the scene, as large as they fit."""
+    width, height = screen.get_size()
+    top = height - LINE_HEIGHT * len(hints)
+    screen.fill(BAR, (0, top, width, height - top))
+    for i, hint in enumerate(hints):
+        size = LARGEST_FONT
+        while font(size).size(hint)[0] > width - 8 and size > 8:
+            size -= 1
+        drawn = font(size).render(hint, True, OUTLINE)
+        middle = width / 2, top + (i + 0.5) * LINE_HEIGHT
+        screen.blit(drawn, drawn.get_rect(center=middle))

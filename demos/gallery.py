@@ -7,8 +7,9 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 from tqdm import tqdm
 
-from pymunk_ellipse.examples.stage.canvas import BACKGROUND, OUTLINE, Canvas, size_for
+from pymunk_ellipse.examples.stage.canvas import BACKGROUND, OUTLINE, size_for
 from pymunk_ellipse.examples.stage.command import scenes
+from pymunk_ellipse.examples.stage.debug_draw import SpaceCanvas
 from pymunk_ellipse.examples.stage.pictures import drawn
 from pymunk_ellipse.examples.stage.scene import steps_to_picture
 
@@ -27,7 +28,7 @@ def run(out: Path, quick: bool) -> None:
         for _ in range(steps_to_picture(make)):
             scene.play()
             scene.step()
-        tiles[name] = drawn(scene, Canvas(make.view, size_for(make.view, TILE)))
+        tiles[name] = drawn(scene, SpaceCanvas(make.view, size_for(make.view, TILE)))
     sheet = contact_sheet(tiles).quantize(COLORS, dither=Image.Dither.NONE)
     picture = out / "gallery.png"
     sheet.save(picture, optimize=True)

@@ -9,13 +9,12 @@ import pygame
 from PIL import Image
 from tqdm import trange
 
-from .canvas import Canvas, size_for
+from .canvas import size_for
+from .debug_draw import SpaceCanvas
 from .scene import STEP, Scene, steps_to_picture
 
 FRAMES_PER_SECOND = 25
 QUICK_FRAMES_PER_SECOND = 5
-# Pixels of the animation's longer side; the picture has twice as many.
-SIZE = 420
 # More would show nothing new of a few flat colours.
 COLORS = 64
 
@@ -29,7 +28,7 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
     out.mkdir(parents=True, exist_ok=True)
     scene = make()
     rate = QUICK_FRAMES_PER_SECOND if quick else FRAMES_PER_SECOND
-    canvas = Canvas(make.view, size_for(make.view, SIZE))
+    canvas = SpaceCanvas(make.view, size_for(make.view, make.pixels))
     frames = []
     picture = out / f"{name}.png"
     steps_per_frame = round(1.0 / rate / STEP)
@@ -39,7 +38,9 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
         if step % steps_per_frame == 0:
             frames.append(drawn(scene, canvas))
         if step == steps_to_picture(make):
-            large = drawn(scene, Canvas(make.view, size_for(make.view, 2 * SIZE)))
+            large = drawn(
+                scene, SpaceCanvas(make.view, size_for(make.view, 2 * make.pixels))
+            )
             quantized(large, large).save(picture, optimize=True)
     for label, number in scene.numbers().items():
         print(f"{label}: {number:.5g}")
@@ -49,7 +50,7 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
     print(f"animation: {animation}")
 
 
-def drawn(scene: Scene, canvas: Canvas) -> Image.Image:
+def drawn(scene: Scene, canvas: SpaceCanvas) -> Image.Image:
     """The scene as it is now."""
     scene.draw(canvas)
     return image(canvas.finish())

@@ -12,7 +12,7 @@ from pymunk import Vec2d
 from pymunk_ellipse import Space
 
 if TYPE_CHECKING:
-    from .canvas import Canvas
+    from .debug_draw import SpaceCanvas
 
 STEP = 1.0 / 240.0
 
@@ -31,6 +31,8 @@ class Scene:
     seconds: ClassVar[float] = 6.0
     # When the picture is taken (seconds), if not at the end.
     picture_at: ClassVar[float | None] = None
+    # Pixels of the animation's longer side; the picture has twice as many.
+    pixels: ClassVar[int] = 420
     # What the mouse and the keys do, for the window to tell.
     hint: ClassVar[str] = ""
 
@@ -69,7 +71,7 @@ class Scene:
         """Lines of text to show, and where each begins in the world."""
         return []
 
-    def draw(self, canvas: Canvas) -> None:
+    def draw(self, canvas: SpaceCanvas) -> None:
         """Draw the scene as it is now: the space and the captions, if it says nothing else."""
         canvas.draw_space(self.space)
         for line, point in self.captions():

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pygame
 
-from .canvas import OUTLINE, Canvas, font, size_for
+from .canvas import OUTLINE, font, size_for
+from .debug_draw import SpaceCanvas
 from .scene import STEP, Scene
 
 FRAMES_PER_SECOND = 60
@@ -30,7 +31,7 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
     pygame.display.set_caption(make.__name__)
     clock = pygame.time.Clock()
     scene = make()
-    canvas: Canvas | None = None
+    canvas: SpaceCanvas | None = None
     size = screen.get_size()
     running = True
     while frames is None or frames > 0:
@@ -39,14 +40,14 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
         if canvas is None or screen.get_size() != size:
             size = screen.get_size()
             room = max(1, size[1] - LINE_HEIGHT * lines)
-            canvas = Canvas(make.view, (size[0], room))
+            canvas = SpaceCanvas(make.view, (size[0], room))
         steps = STEPS_PER_FRAME if running else 0
         for event in pygame.event.get():
             key = event.key if event.type == pygame.KEYDOWN else None
             if event.type == pygame.QUIT or key == pygame.K_ESCAPE:
                 frames = 0
             elif key == pygame.K_r:
-                scene, canvas = make(), Canvas(make.view, (size[0], room))
+                scene, canvas = make(), SpaceCanvas(make.view, (size[0], room))
             elif key == pygame.K_SPACE:
                 running = not running
             elif key == pygame.K_n:

@@ -31,13 +31,16 @@ class Roll(Scene):
     def __init__(self) -> None:
         super().__init__()
         self.bodies = {
-            "16-gon": self.push(partial(polygon, count=16), FLOORS[0]),
-            "64-gon": self.push(partial(polygon, count=64), FLOORS[1]),
-            "ellipse": self.push(partial(Ellipse, a=A, b=B), FLOORS[2]),
+            "16-gon": self.push(partial(polygon, count=16), FLOORS[0], "#d1495b"),
+            "64-gon": self.push(partial(polygon, count=64), FLOORS[1], "#edae49"),
+            "ellipse": self.push(partial(Ellipse, a=A, b=B), FLOORS[2], "#2e9cca"),
         }
 
     def push(
-        self, make_shape: Callable[[pymunk.Body], pymunk.Shape], floor: float
+        self,
+        make_shape: Callable[[pymunk.Body], pymunk.Shape],
+        floor: float,
+        color: str,
     ) -> pymunk.Body:
         """Let a shape roll to the right on a floor of its own."""
         # Beyond the picture on the right, where the ellipse rolls out of it.
@@ -50,7 +53,12 @@ class Roll(Scene):
         shape.density = 0.01
         # Enough that nothing slips.
         shape.friction = 10
-        self.space.add(body, shape)
+        shape.color = color
+        # A spot, so that one sees it turn: a sensor touches nothing.
+        spot = Ellipse(body, 3, 3, offset=(0.7 * A, 0))
+        spot.sensor = True
+        spot.color = "#30343b"
+        self.space.add(body, shape, spot)
         return body
 
     def captions(self) -> list[tuple[str, Point]]:

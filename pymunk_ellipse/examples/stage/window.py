@@ -10,8 +10,9 @@ from .scene import STEP, Scene
 
 FRAMES_PER_SECOND = 60
 STEPS_PER_FRAME = round(1.0 / FRAMES_PER_SECOND / STEP)
-# Pixels of the scene's longer side when the window opens.
+# Pixels of the scene's longer side when the window opens, and how much of the screen it may take.
 SIZE = 900
+SHARE = 0.8
 KEYS = "N: next step     R: restart     Esc: close"
 BAR = "#e4e0d6"
 LINE_HEIGHT = 24
@@ -26,7 +27,10 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
     """
     pygame.display.init()
     lines = 1 + bool(make.hint)
+    screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
     width, height = size_for(make.view, SIZE)
+    smaller = min(1, SHARE * screen_width / width, SHARE * screen_height / height)
+    width, height = size_for(make.view, round(smaller * SIZE))
     screen = open_screen(width, height + LINE_HEIGHT * lines)
     pygame.display.set_caption(make.__name__)
     clock = pygame.time.Clock()

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import json
+import os
+import subprocess
+import sys
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from pymunk_ellipse.examples.stage.command import (
     EXAMPLES,
+    SECONDS,
     add_options,
     listing,
     missing_is_named,
@@ -59,11 +65,19 @@ def main() -> None:
         metavar="ADDRESS",
         help="for a sweep: that of a Dask cluster (default: one is started here)",
     )
+    parser.add_argument(
+        "--measure",
+        action="store_true",
+        help="run the demo, or all, and keep for --list how long each takes",
+    )
     arguments = parser.parse_args()
     name = arguments.name
-    if arguments.list or name is None:
+    if arguments.list or (name is None and not arguments.measure):
         print(listing({"Studies and charts": HERE, "Examples to copy": EXAMPLES}))
         print("The times are those of whole runs on one core; --quick takes seconds.")
+        return
+    if arguments.measure:
+        measure([name] if name else [*studies, *examples])
         return
     sweep = {
         option: value
@@ -100,6 +114,24 @@ def main() -> None:
                 parser.error(str(error))
         arguments.out.mkdir(parents=True, exist_ok=True)
         run(arguments.out, arguments.quick, **chosen)
+
+
+def measure(names: list[str]) -> None:
+    """Run demos, each in a process of its own, and keep its processor time, which others that wait for a core do not share."""
+    for name in names:
+        before = os.times()
+        with TemporaryDirectory() as out:
+            command = [sys.executable, "-m", "demos", name, "--out", out]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        after = os.times()
+        seconds = after.children_user - before.children_user
+        seconds += after.children_system - before.children_system
+        folder = EXAMPLES if name in purposes(EXAMPLES) else HERE
+        kept = json.loads((folder / SECONDS).read_text("utf-8"))
+        kept[name] = round(seconds, 1)
+        text = json.dumps(kept, indent=2, sort_keys=True) + "\n"
+        (folder / SECONDS).write_text(text, "utf-8")
+        print(f"{name}: {seconds:.1f} s")
 
 
 if __name__ == "__main__":

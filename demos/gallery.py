@@ -13,7 +13,7 @@ from pymunk_ellipse.examples.stage.debug_draw import SpaceCanvas
 from pymunk_ellipse.examples.stage.pictures import drawn
 from pymunk_ellipse.examples.stage.scene import steps_to_picture
 
-COLUMNS = 5
+COLUMNS = 6
 TILE = 216
 CAPTION = 22
 GAP = 6
@@ -23,7 +23,10 @@ COLORS = 64
 def run(out: Path, quick: bool) -> None:
     """Run each scene to the moment of its picture; a quick run is the same, it takes seconds."""
     tiles = {}
-    for name, make in tqdm(scenes().items(), "gallery", unit="scene"):
+    shown = scenes()
+    # A tool, whose writing could not be read.
+    del shown["inspector"]
+    for name, make in tqdm(shown.items(), "gallery", unit="scene", disable=None):
         scene = make()
         for _ in range(steps_to_picture(make)):
             scene.play()

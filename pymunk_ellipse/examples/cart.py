@@ -22,9 +22,9 @@ def road(x: float) -> float:
 
 
 class Cart(Scene):
-    view = -10.0, -35.0, 450.0, 125.0
+    view = -10.0, -25.0, 440.0, 105.0
     seconds = 4.5
-    picture_at = 2.2
+    picture_at = 2.0
 
     def __init__(self) -> None:
         super().__init__()

@@ -21,7 +21,7 @@ GAP = 0.05
 
 
 class Cradle(Scene):
-    view = -150.0, -30.0, 150.0, 150.0
+    view = -180.0, -30.0, 180.0, 150.0
     seconds = 8.0
     picture_at = 0.02
 

@@ -25,8 +25,8 @@ COLORS = {"head": "#f2c9a1", "chest": "#2e9cca", "thigh": "#30506b", "shin": "#f
 
 
 class Ragdolls(Scene):
-    view = -40.0, -10.0, 460.0, 360.0
-    seconds = 6.0
+    view = -40.0, -10.0, 380.0, 330.0
+    seconds = 4.5
     picture_at = 1.1
 
     def __init__(self) -> None:

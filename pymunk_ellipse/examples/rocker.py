@@ -18,7 +18,7 @@ TILT = 0.15
 class Rocker(Scene):
     view = -150.0, -15.0, 150.0, 165.0
     seconds = 10.0
-    picture_at = 0.02
+    picture_at = 9.1
 
     def __init__(self) -> None:
         super().__init__()

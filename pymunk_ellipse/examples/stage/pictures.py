@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pygame
 from PIL import Image
-from tqdm import trange
+from tqdm import tqdm
 
 from .canvas import size_for
 from .debug_draw import SpaceCanvas
@@ -32,7 +32,9 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
     frames = []
     picture = out / f"{name}.png"
     steps_per_frame = round(1.0 / rate / STEP)
-    for step in trange(1, round(make.seconds / STEP) + 1, desc=name, unit="step"):
+    steps = range(1, round(make.seconds / STEP) + 1)
+    # No bar where nobody sees it move.
+    for step in tqdm(steps, desc=name, unit="step", disable=None):
         scene.play()
         scene.step()
         if step % steps_per_frame == 0:

@@ -7,10 +7,11 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 from tqdm import tqdm
 
-from pymunk_ellipse.examples.stage.canvas import BACKGROUND, OUTLINE, size_for
+from pymunk_ellipse.examples.stage.canvas import BACKGROUND, OUTLINE
 from pymunk_ellipse.examples.stage.command import scenes
 from pymunk_ellipse.examples.stage.debug_draw import SpaceCanvas
 from pymunk_ellipse.examples.stage.pictures import drawn
+from pymunk_ellipse.examples.stage.plane import size_for
 from pymunk_ellipse.examples.stage.scene import steps_to_picture
 
 COLUMNS = 6

@@ -391,8 +391,8 @@ def coin_is_above(way: Vec2d) -> bool:
 
 def play(folder: Path | None = None) -> None:
     """Play until the window is closed. The best run and the saved game are kept in a folder, the user's own one if none is given."""
-    pygame.display.init()
     try:
+        pygame.display.init()
         screen = pygame.display.set_mode((WIDTH, HEIGHT), pygame.RESIZABLE)
     except pygame.error as error:
         sys.exit(f"A window cannot be opened: {error}")

@@ -20,7 +20,7 @@ JUMP = 330.0
 class OneWay(Scene):
     view = -150.0, -10.0, 150.0, 290.0
     seconds = 8.0
-    picture_at = 5.0
+    picture_at = 4.59
 
     def __init__(self) -> None:
         super().__init__()

@@ -3,7 +3,8 @@
 import os
 
 from .command import main
-from .scene import STEP, Point, Scene, center_of_gravity, energy
+from .plane import Point
+from .scene import STEP, Scene, center_of_gravity, energy
 
 # Before pygame is imported: no greeting among the numbers.
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pygame
 from pymunk import Transform, Vec2d
 
-from .scene import Point
+from .plane import Point, View
 
 # Drawn this many times as large and then reduced, so that edges are smooth.
 SMOOTHING = 2
@@ -21,15 +21,6 @@ DOT = 1 / 140
 TEXT = 1 / 26
 # More vertices than this are a curve, whose outline needs no corners.
 CORNERS = 12
-
-View = tuple[float, float, float, float]
-
-
-def size_for(view: View, longer: int) -> tuple[int, int]:
-    """The size of a picture that shows this part of the world, its longer side so many pixels long."""
-    left, bottom, right, top = view
-    scale = longer / max(right - left, top - bottom)
-    return round(scale * (right - left)), round(scale * (top - bottom))
 
 
 @cache

@@ -10,7 +10,8 @@ import pymunk
 from pymunk import SpaceDebugDrawOptions, Vec2d
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .canvas import OUTLINE, Canvas, View
+from .canvas import OUTLINE, Canvas
+from .plane import View
 
 PALETTE = "#2e9cca", "#d1495b", "#edae49", "#7a6ff0", "#66a182", "#8d6a9f"
 STATIC = "#8a8f98"

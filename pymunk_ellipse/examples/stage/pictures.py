@@ -9,8 +9,8 @@ import pygame
 from PIL import Image
 from tqdm import tqdm
 
-from .canvas import size_for
 from .debug_draw import SpaceCanvas
+from .plane import size_for
 from .scene import STEP, Scene, steps_to_picture
 
 FRAMES_PER_SECOND = 25

@@ -11,12 +11,12 @@ from pymunk import Vec2d
 
 from pymunk_ellipse import Space
 
+from .plane import Point, View
+
 if TYPE_CHECKING:
     from .debug_draw import SpaceCanvas
 
 STEP = 1.0 / 240.0
-
-Point = tuple[float, float]
 
 
 class Scene:
@@ -27,7 +27,7 @@ class Scene:
     """
 
     # Left, bottom, right and top of what is shown.
-    view: ClassVar[tuple[float, float, float, float]]
+    view: ClassVar[View]
     seconds: ClassVar[float] = 6.0
     # When the picture is taken (seconds), if not at the end.
     picture_at: ClassVar[float | None] = None

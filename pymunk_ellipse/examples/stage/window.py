@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pygame
 
-from .canvas import OUTLINE, font, size_for
+from .canvas import OUTLINE, font
 from .debug_draw import SpaceCanvas
+from .plane import View, size_for
 from .scene import STEP, Scene
 
 FRAMES_PER_SECOND = 60
@@ -25,13 +26,8 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
     Space stops the clock and starts it again, N lets it go one step on, R starts the scene
     again, Escape closes the window. The window can be made larger and smaller.
     """
-    pygame.display.init()
     lines = 1 + bool(make.hint)
-    screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
-    width, height = size_for(make.view, SIZE)
-    smaller = min(1, SHARE * screen_width / width, SHARE * screen_height / height)
-    width, height = size_for(make.view, round(smaller * SIZE))
-    screen = open_screen(width, height + LINE_HEIGHT * lines)
+    screen = open_screen(make.view, LINE_HEIGHT * lines)
     pygame.display.set_caption(make.__name__)
     clock = pygame.time.Clock()
     scene = make()
@@ -45,7 +41,7 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
             size = screen.get_size()
             room = max(1, size[1] - LINE_HEIGHT * lines)
             canvas = SpaceCanvas(make.view, (size[0], room))
-        steps = STEPS_PER_FRAME if running else 0
+        single = False
         for event in pygame.event.get():
             key = event.key if event.type == pygame.KEYDOWN else None
             if event.type == pygame.QUIT or key == pygame.K_ESCAPE:
@@ -55,7 +51,7 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
             elif key == pygame.K_SPACE:
                 running = not running
             elif key == pygame.K_n:
-                running, steps = False, 1
+                running, single = False, True
             elif event.type in (pygame.KEYDOWN, pygame.KEYUP):
                 name = pygame.key.name(event.key)
                 scene.key(name, event.type == pygame.KEYDOWN)
@@ -65,7 +61,7 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
                 scene.drag(canvas.world(event.pos))
             elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
                 scene.release()
-        for _ in range(steps):
+        for _ in range(STEPS_PER_FRAME if running else single):
             scene.step()
         scene.draw(canvas)
         screen.blit(canvas.finish(), (0, 0))
@@ -78,9 +74,20 @@ def open_window(make: type[Scene], frames: int | None = None) -> Scene:
     return scene
 
 
-def open_screen(width: int, height: int) -> pygame.Surface:
-    """A window of this size, or an end with a clear word where there is no screen."""
+def size_on_screen(view: View) -> tuple[int, int]:
+    """How large a scene is when its window opens."""
+    screen_width, screen_height = pygame.display.get_desktop_sizes()[0]
+    width, height = size_for(view, SIZE)
+    smaller = min(1, SHARE * screen_width / width, SHARE * screen_height / height)
+    return size_for(view, round(smaller * SIZE))
+
+
+def open_screen(view: View, bar: int) -> pygame.Surface:
+    """A window for a scene and a bar below it, or an end with a clear word where there is no screen."""
     try:
+        pygame.display.init()
+        width, height = size_on_screen(view)
+        height += bar
         return pygame.display.set_mode((width, height), pygame.RESIZABLE)
     except pygame.error as error:
         raise SystemExit(

@@ -345,20 +345,22 @@ class Painter:
     def texts(
         self, picture: pygame.Surface, game: Game, best: Best | None, note: str
     ) -> None:
-        record = f"   best {best.seconds:.1f} s" if best else ""
-        state = f"coins {game.coins}/{len(COINS)}   {game.seconds:.1f} s{record}"
+        known = f"   best {best.seconds:.1f} s" if best else ""
+        state = f"coins {game.coins}/{len(COINS)}   {game.seconds:.1f} s{known}"
         picture.blit(self.font.render(state, True, OUTLINE), (16, 14))
         keys = "arrows: roll   space: jump   S: save   L: load   R: again   P: pause   Esc: leave"
         line = self.small.render(keys, True, OUTLINE)
         picture.blit(line, line.get_rect(topright=(WIDTH - 16, 16)))
         if game.won:
+            record = best is None or game.seconds < best.seconds
             missing = len(COINS) - game.coins
             cost = (
-                f", {missing} coins missed: {PENALTY * missing:.0f} s more"
-                if missing
-                else ""
+                f", {PENALTY * missing:.0f} s of them for {missing} coins left behind"
             )
-            note = f"You made it in {game.seconds:.1f} s{cost}. R: again"
+            note = (
+                f"{'The best so far: ' if record else ''}{game.seconds:.1f} s"
+                f"{cost if missing else ''}. R: again"
+            )
         if note:
             line = self.font.render(note, True, OUTLINE, SKY)
             picture.blit(line, line.get_rect(center=(WIDTH / 2, 0.2 * HEIGHT)))

@@ -28,7 +28,10 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
     out.mkdir(parents=True, exist_ok=True)
     scene = make()
     rate = QUICK_FRAMES_PER_SECOND if quick else FRAMES_PER_SECOND
-    canvas = SpaceCanvas(make.view, size_for(make.view, make.pixels))
+    small, large = (
+        SpaceCanvas(make.view, size_for(make.view, longer))
+        for longer in (make.pixels, 2 * make.pixels)
+    )
     frames = []
     picture = out / f"{name}.png"
     steps_per_frame = round(1.0 / rate / STEP)
@@ -38,12 +41,10 @@ def leave_pictures(make: type[Scene], out: Path, quick: bool) -> None:
         scene.play()
         scene.step()
         if step % steps_per_frame == 0:
-            frames.append(drawn(scene, canvas))
+            frames.append(drawn(scene, small))
         if step == steps_to_picture(make):
-            large = drawn(
-                scene, SpaceCanvas(make.view, size_for(make.view, 2 * make.pixels))
-            )
-            quantized(large, large).save(picture, optimize=True)
+            still = drawn(scene, large)
+            quantized(still, still).save(picture, optimize=True)
     for label, number in scene.numbers().items():
         print(f"{label}: {number:.5g}")
     animation = out / f"{name}.gif"

@@ -21,57 +21,79 @@ LARGEST_FONT = 22
 
 
 def open_window(make: type[Scene], frames: int | None = None) -> Scene:
-    """Run a scene until its window is closed, or for so many frames.
+    """Run a scene until its window is closed, or for so many frames."""
+    window = Window(make)
+    clock = pygame.time.Clock()
+    while window.open and (frames is None or frames > 0):
+        frames = None if frames is None else frames - 1
+        window.show_frame()
+        clock.tick(FRAMES_PER_SECOND)
+    pygame.display.quit()
+    return window.scene
+
+
+class Window:
+    """A scene, and a bar with hints below it.
 
     Space stops the clock and starts it again, N lets it go one step on, R starts the scene
     again, Escape closes the window. The window can be made larger and smaller.
     """
-    lines = 1 + bool(make.hint)
-    screen = open_screen(make.view, LINE_HEIGHT * lines)
-    pygame.display.set_caption(make.__name__)
-    clock = pygame.time.Clock()
-    scene = make()
-    canvas: SpaceCanvas | None = None
-    size = screen.get_size()
-    running = True
-    while frames is None or frames > 0:
-        frames = None if frames is None else frames - 1
-        screen = pygame.display.get_surface() or screen
-        if canvas is None or screen.get_size() != size:
-            size = screen.get_size()
-            room = max(1, size[1] - LINE_HEIGHT * lines)
-            canvas = SpaceCanvas(make.view, (size[0], room))
+
+    def __init__(self, make: type[Scene]) -> None:
+        self.make = make
+        self.bar = LINE_HEIGHT * (2 if make.hint else 1)
+        self.screen = open_screen(make.view, self.bar)
+        pygame.display.set_caption(make.__name__)
+        self.open = self.running = True
+        self.start()
+
+    def start(self) -> None:
+        self.scene = self.make()
+        self.canvas = self.make_canvas()
+
+    def make_canvas(self) -> SpaceCanvas:
+        self.size = width, height = self.screen.get_size()
+        return SpaceCanvas(self.make.view, (width, max(1, height - self.bar)))
+
+    def show_frame(self) -> None:
+        """Answer what has happened, let the time of a frame pass, and draw."""
+        self.screen = pygame.display.get_surface() or self.screen
+        if self.screen.get_size() != self.size:
+            self.canvas = self.make_canvas()
         single = False
         for event in pygame.event.get():
             key = event.key if event.type == pygame.KEYDOWN else None
             if event.type == pygame.QUIT or key == pygame.K_ESCAPE:
-                frames = 0
+                self.open = False
             elif key == pygame.K_r:
-                scene, canvas = make(), SpaceCanvas(make.view, (size[0], room))
+                self.start()
             elif key == pygame.K_SPACE:
-                running = not running
+                self.running = not self.running
             elif key == pygame.K_n:
-                running, single = False, True
-            elif event.type in (pygame.KEYDOWN, pygame.KEYUP):
-                name = pygame.key.name(event.key)
-                scene.key(name, event.type == pygame.KEYDOWN)
-            elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-                scene.press(canvas.world(event.pos))
-            elif event.type == pygame.MOUSEMOTION:
-                scene.drag(canvas.world(event.pos))
-            elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
-                scene.release()
-        for _ in range(STEPS_PER_FRAME if running else single):
-            scene.step()
-        scene.draw(canvas)
-        screen.blit(canvas.finish(), (0, 0))
-        clock_key = "Space: pause" if running else "PAUSED     Space: go on"
+                self.running, single = False, True
+            else:
+                self.tell_scene(event)
+        for _ in range(STEPS_PER_FRAME if self.running else single):
+            self.scene.step()
+        self.scene.draw(self.canvas)
+        self.screen.blit(self.canvas.finish(), (0, 0))
+        clock_key = "Space: pause" if self.running else "PAUSED     Space: go on"
         keys = f"{clock_key}     {KEYS}"
-        draw_hints(screen, [make.hint, keys] if make.hint else [keys])
+        hint = self.make.hint
+        draw_hints(self.screen, [hint, keys] if hint else [keys])
         pygame.display.flip()
-        clock.tick(FRAMES_PER_SECOND)
-    pygame.display.quit()
-    return scene
+
+    def tell_scene(self, event: pygame.event.Event) -> None:
+        """Hand the mouse and the keys on to the scene."""
+        if event.type in (pygame.KEYDOWN, pygame.KEYUP):
+            name = pygame.key.name(event.key)
+            self.scene.key(name, event.type == pygame.KEYDOWN)
+        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            self.scene.press(self.canvas.world(event.pos))
+        elif event.type == pygame.MOUSEMOTION:
+            self.scene.drag(self.canvas.world(event.pos))
+        elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
+            self.scene.release()
 
 
 def size_on_screen(view: View) -> tuple[int, int]:

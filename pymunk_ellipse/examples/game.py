@@ -375,15 +375,17 @@ def keys(game: Game) -> Controls:
 
 
 def autopilot(game: Game) -> Controls:
-    """Rolls to the right, and jumps for coins and where rays see a gap in the ground or a step ahead."""
+    """Rolls to the right, and jumps for coins and where rays see a gap in the ground, a wall, or a step that stops it."""
     position = game.egg.position
     gap = not game.sees(position + Vec2d(34, 0), (0, -110))
-    wall = game.sees(position, (30, 0)) and game.sees(position + Vec2d(0, 14), (34, 0))
+    step = game.sees(position, (30, 0))
+    wall = step and game.sees(position + Vec2d(0, 14), (34, 0))
+    stopped = step and game.egg.velocity.x < 20
     above = any(
         shape.collision_type == COIN and coin_is_above(shape.bb.center() - position)
         for shape in game.space.shapes
     )
-    return Controls(roll=1.0, jump=gap or wall or above)
+    return Controls(roll=1.0, jump=gap or wall or stopped or above)
 
 
 def coin_is_above(way: Vec2d) -> bool:

@@ -1,57 +1,53 @@
-"""The command line of the demos."""
+"""The command line of the demos: studies and charts, and the examples of the package."""
 
 from __future__ import annotations
 
 import argparse
-import ast
+import json
+import os
+import subprocess
+import sys
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pymunk_ellipse.examples.stage.command import (
+    EXAMPLES,
+    SECONDS,
+    add_options,
+    listing,
+    missing_is_named,
+    purposes,
+    runner,
+)
 
 HERE = Path(__file__).parent
-
-
-def purposes(directory: Path) -> dict[str, str]:
-    """The first line of the docstring of each module in a directory, by the module's name."""
-    found = {}
-    for path in sorted(directory.glob("[!_]*.py")):
-        # Parsed, not imported, so that the list needs none of what the demos need.
-        docstring = ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
-        found[path.stem] = docstring.partition("\n")[0]
-    return found
+# The options of those that sweep.
+SWEEPS = "jobs", "backend", "scheduler"
 
 
 def main() -> None:
-    demos = purposes(HERE)
-    scenes = purposes(HERE / "scenes")
+    studies = purposes(HERE)
+    examples = purposes(EXAMPLES)
     parser = argparse.ArgumentParser(
         prog="python -m demos",
         description="Run a demo: it prints its key numbers and leaves a picture.",
+        epilog="Without a name the demos are listed.",
     )
     parser.add_argument(
         "name",
         nargs="?",
-        choices=[*demos, *scenes],
+        choices=[*studies, *examples],
         metavar="NAME",
-        help="the demo or scene to run, see --list",
+        help="the demo to run",
     )
+    parser.add_argument("--list", action="store_true", help="list the demos, and stop")
+    add_options(parser)
     parser.add_argument(
-        "--list", action="store_true", help="list demos and scenes, and stop"
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path("out"),
-        metavar="DIR",
-        help="where to leave the pictures (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help="a smaller run, in seconds"
-    )
-    parser.add_argument(
-        "--window",
+        "--full",
         action="store_true",
-        help="open the game or a scene in a window instead",
+        help="the full size of what would take longer than some minutes",
     )
     parser.add_argument(
         "--jobs",
@@ -69,43 +65,73 @@ def main() -> None:
         metavar="ADDRESS",
         help="for a sweep: that of a Dask cluster (default: one is started here)",
     )
+    parser.add_argument(
+        "--measure",
+        action="store_true",
+        help="run the demo, or all, and keep for --list how long each takes",
+    )
     arguments = parser.parse_args()
     name = arguments.name
-    if arguments.list:
-        width = max(map(len, [*demos, *scenes]))
-        for title, modules in ("Demos", demos), ("Scenes of the gallery", scenes):
-            print(f"{title}:")
-            for module, purpose in modules.items():
-                print(f"  {module:{width}}  {purpose}")
-    elif name is None:
-        parser.error("name a demo, or use --list to see them")
-    else:
-        package = "demos.scenes" if name in scenes else "demos"
-        run = import_module(f"{package}.{name}").run
-        takes = signature(run).parameters
-        options = {
-            option: value
-            for option in ("jobs", "backend", "scheduler")
-            if (value := getattr(arguments, option)) is not None
-        }
-        if arguments.window and "window" not in takes:
-            parser.error(f"--window is for the game and the scenes, not for {name}")
-        if options and "engine" not in takes:
-            parser.error(f"--{next(iter(options))} is for sweeps, not for {name}")
-        if arguments.window:
-            run(arguments.out, arguments.quick, window=True)
+    if arguments.list or (name is None and not arguments.measure):
+        print(listing({"Studies and charts": HERE, "Examples to copy": EXAMPLES}))
+        print("The times are those of whole runs on one core; --quick takes seconds.")
+        return
+    if arguments.measure:
+        measure([name] if name else [*studies, *examples])
+        return
+    sweep = {
+        option: value
+        for option in SWEEPS
+        if (value := getattr(arguments, option)) is not None
+    }
+    with missing_is_named(name):
+        if name in examples:
+            if arguments.full or sweep:
+                parser.error(f"--full and options of sweeps are not for {name}")
+            run_example = runner(name)
+            run_example(arguments.out, arguments.quick, arguments.window)
             return
+        if arguments.window:
+            parser.error(f"--window is for the examples, not for {name}")
+        run = import_module(f"demos.{name}").run
+        takes = signature(run).parameters
         chosen = {}
-        if options:
+        if arguments.full:
+            if "full" not in takes:
+                parser.error(f"--full is not for {name}, which is of one size")
+            if arguments.quick:
+                parser.error("--quick and --full exclude each other")
+            chosen["full"] = True
+        if sweep:
+            if "engine" not in takes:
+                parser.error(f"--{next(iter(sweep))} is for sweeps, not for {name}")
             # Joblib is for the demos that sweep alone.
             from ._sweep import Engine
 
             try:
-                chosen["engine"] = Engine(**options)
+                chosen["engine"] = Engine(**sweep)
             except ValueError as error:
                 parser.error(str(error))
         arguments.out.mkdir(parents=True, exist_ok=True)
         run(arguments.out, arguments.quick, **chosen)
+
+
+def measure(names: list[str]) -> None:
+    """Run demos, each in a process of its own, and keep its processor time, which others that wait for a core do not share."""
+    for name in names:
+        before = os.times()
+        with TemporaryDirectory() as out:
+            command = [sys.executable, "-m", "demos", name, "--out", out]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        after = os.times()
+        seconds = after.children_user - before.children_user
+        seconds += after.children_system - before.children_system
+        folder = EXAMPLES if name in purposes(EXAMPLES) else HERE
+        kept = json.loads((folder / SECONDS).read_text("utf-8"))
+        kept[name] = round(seconds, 1)
+        text = json.dumps(kept, indent=2, sort_keys=True) + "\n"
+        (folder / SECONDS).write_text(text, "utf-8")
+        print(f"{name}: {seconds:.1f} s")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, sin
+from math import atan2, cos, degrees, sin
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.patches import Ellipse as EllipsePatch
 
-from pymunk_ellipse.narrowphase.common_normal import first_guess, fitted_circles
+from pymunk_ellipse.examples.stage.fit import first_normal, step_at
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 from pymunk_ellipse.published_fit import FittedCircle, PlacedEllipse, circle_fit
 
@@ -52,38 +52,17 @@ def alternating(one: PlacedEllipse, two: PlacedEllipse) -> list[Sweep]:
 
 def at_a_common_normal(one: PlacedEllipse, two: PlacedEllipse) -> list[Sweep]:
     """Both circles at the same normal, which then turns to the line of their centres."""
-    turn = two.angle - one.angle
-    dx, dy = two.x - one.x, two.y - one.y
-    c, s = cos(one.angle), sin(one.angle)
-    pair = (
-        one.a,
-        one.b,
-        two.a,
-        two.b,
-        cos(turn),
-        sin(turn),
-        c * dx + s * dy,
-        c * dy - s * dx,
-    )
-    nx, ny = first_guess(pair)
+    normal = first_normal(one, two)
     result = []
     for _ in range(SWEEPS):
-        f, slope, between, nx, ny, px, py, radius1 = fitted_circles(pair, nx, ny)
-        radius2 = between - f - radius1
-        x, y = px - radius1 * nx, py - radius1 * ny
-        # From the first circle's centre to the second's: along the normal and across it.
-        centers = (
-            (x, y),
-            (x + between * nx - slope * ny, y + between * ny + slope * nx),
-        )
-        (x1, y1), (x2, y2) = (
-            (one.x + c * u - s * v, one.y + s * u + c * v) for u, v in centers
-        )
-        circles = FittedCircle(x1, y1, radius1), FittedCircle(x2, y2, radius2)
-        distance = hypot(x2 - x1, y2 - y1)
-        normal = (x2 - x1) / distance, (y2 - y1) / distance
-        result.append(Sweep(circles, radius1 + radius2 - distance, normal))
-        nx, ny = c * normal[0] + s * normal[1], c * normal[1] - s * normal[0]
+        step = step_at(one, two, normal)
+        assert step.second is not None
+        circles = step.first, step.second
+        way = step.second.center - step.first.center
+        depth = sum(circle.radius for circle in circles) - way.length
+        fitted = [FittedCircle(*circle.center, circle.radius) for circle in circles]
+        result.append(Sweep((fitted[0], fitted[1]), depth, way.normalized()))
+        normal = way
     return result
 
 

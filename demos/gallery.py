@@ -1,41 +1,38 @@
-"""A contact sheet of the gallery's scenes, each a small file in demos/scenes to copy from."""
+"""A contact sheet of the scenes in pymunk_ellipse/examples, each a small file to copy from."""
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 from tqdm import tqdm
 
-from .scenes._canvas import BACKGROUND, OUTLINE, Canvas
-from .scenes._scene import Scene, steps_to_picture
+from pymunk_ellipse.examples.stage.canvas import BACKGROUND, OUTLINE
+from pymunk_ellipse.examples.stage.command import scenes
+from pymunk_ellipse.examples.stage.debug_draw import SpaceCanvas
+from pymunk_ellipse.examples.stage.pictures import drawn
+from pymunk_ellipse.examples.stage.plane import size_for
+from pymunk_ellipse.examples.stage.scene import steps_to_picture
 
-COLUMNS = 5
+COLUMNS = 6
 TILE = 216
 CAPTION = 22
 GAP = 6
 COLORS = 64
 
 
-def scenes() -> dict[str, type[Scene]]:
-    """The scenes of the gallery by the names of their files."""
-    found = {}
-    for path in sorted((Path(__file__).parent / "scenes").glob("[!_]*.py")):
-        module = import_module(f"demos.scenes.{path.stem}")
-        (found[path.stem],) = module.run.args
-    return found
-
-
 def run(out: Path, quick: bool) -> None:
     """Run each scene to the moment of its picture; a quick run is the same, it takes seconds."""
     tiles = {}
-    for name, make in tqdm(scenes().items(), "gallery", unit="scene"):
+    shown = scenes()
+    # A tool, whose writing could not be read.
+    del shown["inspector"]
+    for name, make in tqdm(shown.items(), "gallery", unit="scene", disable=None):
         scene = make()
         for _ in range(steps_to_picture(make)):
             scene.play()
             scene.step()
-        tiles[name] = Canvas(make.view, TILE).draw(scene.space)
+        tiles[name] = drawn(scene, SpaceCanvas(make.view, size_for(make.view, TILE)))
     sheet = contact_sheet(tiles).quantize(COLORS, dither=Image.Dither.NONE)
     picture = out / "gallery.png"
     sheet.save(picture, optimize=True)

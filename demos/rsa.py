@@ -28,6 +28,8 @@ DENSEST = 1.85
 # The area of the square, by that of an ellipse.
 AREA = 400.0
 SEED = 7
+# Squares for each aspect ratio.
+RUNS, FULL_RUNS = 4, 16
 
 
 class Surface:
@@ -127,10 +129,10 @@ def saturated(
     return float(end), times, coverages
 
 
-def run(out: Path, quick: bool) -> None:
-    """Fill squares for each aspect ratio; a quick run fills fewer, and gives up sooner."""
+def run(out: Path, quick: bool, full: bool = False) -> None:
+    """Fill squares for each aspect ratio, more in a full run; a quick run fills fewer, and gives up sooner."""
     ratios = QUICK_ASPECT_RATIOS if quick else ASPECT_RATIOS
-    runs = 1 if quick else 16
+    runs = 1 if quick else FULL_RUNS if full else RUNS
     attempts = 20_000 if quick else 150_000
     found: dict[float, list[float]] = {ratio: [] for ratio in ratios}
     first: dict[float, Surface] = {}

@@ -144,8 +144,19 @@ def draw(tables: dict[tuple[float, float], Table], course: Course) -> Figure:
         )
         for place, row in enumerate(table.values()):
             inside = row.milliseconds > 0.9 * longest
+            cut = row.milliseconds > longest
+            if cut:
+                # A bar that goes on beyond the frame is seen to be broken.
+                for end in 0.96, 0.98:
+                    axes.plot(
+                        [end * longest, (end + 0.01) * longest],
+                        [place + 0.5, place - 0.5],
+                        color="white",
+                        linewidth=3.0,
+                    )
             axes.annotate(
-                f"{row.milliseconds:.2f} ms, {row.ratios['12-gons']:.2f} times 12-gons",
+                f"{row.milliseconds:.2f} ms, {row.ratios['12-gons']:.2f} times 12-gons"
+                + (": longer than the frame" if cut else ""),
                 (0.0 if inside else row.milliseconds, place),
                 textcoords="offset points",
                 xytext=(4.0, 0.0),

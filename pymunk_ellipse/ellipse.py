@@ -24,6 +24,7 @@ from .contacts import handler
 from .contacts.backend import kernel
 from .contacts.pair import ShapeContact
 from .narrowphase.frame import Frame, frame_of, half_extents
+from .outline import outline_vertices
 
 
 class ShapeDistance(NamedTuple):
@@ -249,6 +250,35 @@ class Ellipse(pymunk.Poly):
         width, height = half_extents(ellipse)
         x, y = ellipse[4:]
         return BB(x - width, y - height, x + width, y + height)
+
+    def outline(self, transform: pymunk.Transform | None = None) -> list[Vec2d]:
+        """Vertices of a polygon that looks like the ellipse, to draw it by hand.
+
+        Without a transform they are world coordinates, where the body is now; without a body,
+        where update put it. A transform leads from body local coordinates to wherever the
+        ellipse is drawn: the identity gives local points for a sprite, one with a camera's
+        scale as many vertices as the screen can show.
+
+        The vertices lie on the ellipse, counterclockwise before the transform, the first one at
+        the end of the semi-axis a. The ellipse is nowhere farther from an edge than a tenth of
+        a unit of where the transform leads, a pixel say, or than a thousandth of its longer
+        semi-axis, whichever is less, as long as 1000 vertices suffice.
+        :py:meth:`pymunk_ellipse.Space.debug_draw` draws with the same vertices.
+
+        >>> body = pymunk.Body()
+        >>> body.position = 100, 50
+        >>> egg = Ellipse(body, 20, 10)
+        >>> world = egg.outline()
+        >>> world[0], len(world)
+        (Vec2d(120.0, 50.0), 71)
+        >>> egg.outline(pymunk.Transform.scaling(2))[0]
+        Vec2d(40.0, 0.0)
+        """
+        if transform is None:
+            frame, transform = self._placed(), pymunk.Transform.identity()
+        else:
+            frame = self._frame
+        return outline_vertices(frame, self._a >= self._b, transform)
 
     def point_query(self, p: tuple[float, float]) -> PointQueryInfo:
         """The nearest point of the surface to p, with the distance and its gradient, all in world coordinates.

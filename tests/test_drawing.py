@@ -14,7 +14,6 @@ from pymunk.space_debug_draw_options import SpaceDebugColor
 from scenes import add_ellipse, add_floor
 
 from pymunk_ellipse import Ellipse, Space
-from pymunk_ellipse.drawing import outline
 
 RED = SpaceDebugColor(255, 0, 0, 255)
 BLUE = SpaceDebugColor(0, 0, 255, 255)
@@ -102,8 +101,8 @@ def test_outlines_are_as_fine_as_the_screen(a, b, scale):
 
 def test_the_number_of_vertices_is_bounded():
     shape = Ellipse(None, 1e50, 1e44)
-    assert len(outline(shape, Transform.identity())[1]) == 1000
-    assert len(outline(Ellipse(None, 1e-50, 1e-50), Transform.identity())[1]) == 71
+    assert len(shape.outline()) == 1000
+    assert len(Ellipse(None, 1e-50, 1e-50).outline()) == 71
 
 
 @pytest.mark.parametrize("a, b", [(40, 20), (20, 40)])
@@ -120,7 +119,7 @@ def test_the_mark_points_to_the_end_of_a(a, b):
 
 def test_vertices_turn_counterclockwise():
     for a, b in ((40, 20), (20, 40)):
-        _, vertices = outline(Ellipse(None, a, b), Transform.identity())
+        vertices = Ellipse(None, a, b).outline()
         area = sum(
             one.cross(two)
             for one, two in zip(vertices, vertices[1:] + vertices[:1], strict=True)
@@ -130,11 +129,42 @@ def test_vertices_turn_counterclockwise():
 
 def test_any_transform_is_followed():
     transform = Transform(1.5, 0.5, -0.3, 2.0, 7.0, 8.0)
-    _, vertices = outline(Ellipse(None, 40, 20), transform)
+    vertices = Ellipse(None, 40, 20).outline(transform)
     t = 2 * pi / len(vertices)
     for i, vertex in enumerate(vertices):
         expected = transform @ Vec2d(40 * cos(i * t), 20 * sin(i * t))
         assert (vertex - expected).length < 1e-9
+
+
+def test_outlines_drawn_by_hand_are_those_that_are_drawn():
+    """In the world, from body local points, and by a transform that a game has between two steps."""
+    space = Space()
+    body = pymunk.Body()
+    body.position, body.angle = (100, 50), 0.7
+    shape = Ellipse(body, 20, 40, (5, -3), 0.4)
+    shape.density = 1
+    space.add(body, shape)
+    [(_, vertices, *_), _] = recorded(space)
+    assert shape.outline() == vertices
+    local = shape.outline(Transform.identity())
+    placed = [body.local_to_world(point) for point in local]
+    c, s = body.rotation_vector
+    posed = shape.outline(Transform(c, s, -s, c, *body.position))
+    for point, one, other in zip(vertices, placed, posed, strict=True):
+        assert (point - one).length < 1e-9
+        assert (point - other).length < 1e-9
+
+
+def test_an_outline_is_as_fine_as_its_transform_asks_for():
+    shape = Ellipse(None, 40, 20)
+    near, far = (shape.outline(Transform.scaling(scale)) for scale in (50, 1))
+    assert len(near) > 2 * len(far)
+
+
+def test_a_shape_without_a_body_is_outlined_where_it_was_updated_to():
+    shape = Ellipse(None, 40, 20, (1, 0))
+    shape.update(Transform(0, 1, -1, 0, 7, 8))
+    assert shape.outline()[0] == pytest.approx((7, 49))
 
 
 # Options

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, show
+from pymunk_ellipse.examples.stage import Scene, main
 
 DENSITY = 0.01
 # Semi-axes and centre of each limb, then the limb it hangs on, where, and how far it may turn.
@@ -28,8 +25,8 @@ COLORS = {"head": "#f2c9a1", "chest": "#2e9cca", "thigh": "#30506b", "shin": "#f
 
 
 class Ragdolls(Scene):
-    view = -40.0, -10.0, 460.0, 360.0
-    seconds = 6.0
+    view = -40.0, -10.0, 380.0, 330.0
+    seconds = 4.5
     picture_at = 1.1
 
     def __init__(self) -> None:
@@ -83,4 +80,5 @@ class Ragdolls(Scene):
         }
 
 
-run = partial(show, Ragdolls)
+if __name__ == "__main__":
+    main(Ragdolls)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from math import cos, hypot, pi, sin
 
 import numpy as np
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from .._shapes import inscribed_polygon
-from ._scene import STEP, Scene, show
+from pymunk_ellipse.examples.stage import STEP, Point, Scene, main
 
 A, B = 60.0, 30.0
 GRAVITY = 500.0
@@ -21,7 +18,7 @@ TILT = 0.15
 class Rocker(Scene):
     view = -150.0, -15.0, 150.0, 165.0
     seconds = 10.0
-    picture_at = 0.02
+    picture_at = 9.1
 
     def __init__(self) -> None:
         super().__init__()
@@ -30,7 +27,9 @@ class Rocker(Scene):
         self.add_walls((-145, 0), (145, 0), friction=100)
         self.add_walls((-145, 80), (145, 80), friction=100)
         self.ellipse = self.add_rocker(Ellipse(pymunk.Body(), A, B), floor=82)
-        twin = inscribed_polygon(pymunk.Body(), A, B, 24)
+        angles = [2 * pi * i / 24 for i in range(24)]
+        corners = [(A * cos(t), B * sin(t)) for t in angles]
+        twin = pymunk.Poly(pymunk.Body(), corners)
         self.polygon = self.add_rocker(twin, floor=2)
         self.swings: dict[pymunk.Body, list[float]] = {
             self.ellipse: [],
@@ -54,20 +53,33 @@ class Rocker(Scene):
         for body, angles in self.swings.items():
             angles.append(body.angle)
 
+    def captions(self) -> list[tuple[str, Point]]:
+        return [
+            (f"ellipse: {self.swing_left(self.ellipse):.0%} of its swing", (-145, 152)),
+            (f"24-gon: {self.swing_left(self.polygon):.0%} of its swing", (-145, 70)),
+        ]
+
+    def swing_left(self, body: pymunk.Body) -> float:
+        """How far to both sides a rocker has swung in the last period, as a part of the first swing."""
+        period = round(self.period() / STEP)
+        if self.steps < period:
+            return 1.0
+        last = self.swings[body][-period:]
+        return (max(last) - min(last)) / (2 * TILT)
+
     def numbers(self) -> dict[str, float]:
-        ellipse, polygon = self.swings.values()
+        ellipse = self.swings[self.ellipse]
         crossings = [
             i for i in range(1, len(ellipse)) if ellipse[i - 1] > 0 >= ellipse[i]
         ]
         periods = len(crossings) - 1
-        last_swing = round(self.period() / STEP)
         return {
             "period by theory (s)": self.period(),
             "period of the ellipse (s)": STEP
             * (crossings[-1] - crossings[0])
             / periods,
-            "swing left of the ellipse": max(ellipse[-last_swing:]) / TILT,
-            "swing left of the 24-gon": max(polygon[-last_swing:]) / TILT,
+            "swing left of the ellipse": self.swing_left(self.ellipse),
+            "swing left of the 24-gon": self.swing_left(self.polygon),
         }
 
     def period(self) -> float:
@@ -83,4 +95,5 @@ class Rocker(Scene):
         return float(4 * np.sum(TILT * np.cos(s) / spin) * pi / 128)
 
 
-run = partial(show, Rocker)
+if __name__ == "__main__":
+    main(Rocker)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import pairwise
 from math import dist, pi, sin, sqrt
 
@@ -10,8 +9,7 @@ import pymunk
 from pymunk import Vec2d
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, show
+from pymunk_ellipse.examples.stage import Scene, main
 
 A, B = 18.0, 13.0
 TURNS_PER_SECOND = 1.0
@@ -24,9 +22,9 @@ def road(x: float) -> float:
 
 
 class Cart(Scene):
-    view = -10.0, -35.0, 450.0, 125.0
+    view = -10.0, -25.0, 440.0, 105.0
     seconds = 4.5
-    picture_at = 2.2
+    picture_at = 2.0
 
     def __init__(self) -> None:
         super().__init__()
@@ -79,4 +77,5 @@ class Cart(Scene):
         }
 
 
-run = partial(show, Cart)
+if __name__ == "__main__":
+    main(Cart)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import random
-from functools import partial
 from math import pi
 
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, show
+from pymunk_ellipse.examples.stage import Scene, main
 
 COUNT = 240
 FILLED_AT = 1.5
@@ -66,4 +64,5 @@ class Hopper(Scene):
         return (last - first) / (self.times_out[last] - self.times_out[first])
 
 
-run = partial(show, Hopper)
+if __name__ == "__main__":
+    main(Hopper)

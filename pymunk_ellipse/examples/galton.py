@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import random
-from functools import partial
 from math import pi, sqrt
 from statistics import pstdev
 
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, show
+from pymunk_ellipse.examples.stage import Scene, main
 
 ROWS = 9
 PITCH = 28.0
@@ -30,7 +28,7 @@ class GaltonBoard(Scene):
         self.space.gravity = 0, -300
         self.space.damping = 0.1
         self.rng = random.Random(2)
-        self.fallen: list[Ellipse] = []
+        self.fallen: list[pymunk.Body] = []
         ground = self.space.static_body
         for row in range(ROWS):
             # Every other row is shifted by half a pitch.
@@ -54,10 +52,10 @@ class GaltonBoard(Scene):
             ellipse.density = 0.01
             ellipse.friction = 0.3
             self.space.add(body, ellipse)
-            self.fallen.append(ellipse)
+            self.fallen.append(body)
 
     def numbers(self) -> dict[str, float]:
-        places = [ellipse.body.position.x for ellipse in self.fallen]
+        places = [body.position.x for body in self.fallen]
         return {
             "ellipses": len(places),
             "mean place, in pitches of the pegs": sum(places) / len(places) / PITCH,
@@ -67,4 +65,5 @@ class GaltonBoard(Scene):
         }
 
 
-run = partial(show, GaltonBoard)
+if __name__ == "__main__":
+    main(GaltonBoard)

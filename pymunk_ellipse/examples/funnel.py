@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import random
-from functools import partial
 from math import pi
 
 import pymunk
 
 from pymunk_ellipse import Ellipse
-
-from ._scene import Scene, energy, show
+from pymunk_ellipse.examples.stage import Scene, energy, main
 
 GRAVITY = 500.0
 
@@ -32,7 +30,7 @@ class Funnel(Scene):
         self.eggs = [self.lay_egg(rng, i) for i in range(60)]
         self.energy_at_start = self.energy()
 
-    def lay_egg(self, rng: random.Random, i: int) -> Ellipse:
+    def lay_egg(self, rng: random.Random, i: int) -> pymunk.Body:
         """An egg above the funnel, no two of them alike."""
         row, column = divmod(i, 10)
         body = pymunk.Body()
@@ -45,13 +43,13 @@ class Funnel(Scene):
         egg.friction = 0.4
         egg.elasticity = 0.2
         self.space.add(body, egg)
-        return egg
+        return body
 
     def energy(self) -> float:
-        return energy((egg.body for egg in self.eggs), GRAVITY)
+        return energy(self.eggs, GRAVITY)
 
     def numbers(self) -> dict[str, float]:
-        centers = [egg.body.position for egg in self.eggs]
+        centers = [egg.position for egg in self.eggs]
         return {
             "eggs": len(self.eggs),
             "eggs in the basket": sum(abs(x) < 110 and 0 < y < 110 for x, y in centers),
@@ -61,4 +59,5 @@ class Funnel(Scene):
         }
 
 
-run = partial(show, Funnel)
+if __name__ == "__main__":
+    main(Funnel)

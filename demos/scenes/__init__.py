@@ -1,1 +1,0 @@
-"""The gallery's scenes: each module without a leading underscore is one, to copy from."""

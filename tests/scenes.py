@@ -79,6 +79,26 @@ def add_box(space, half_width, height, friction=0.5):
         space.add(wall)
 
 
+def mixed_pile():
+    """Ellipses in a box that fall, with shapes of every other kind upon them, and may fall asleep."""
+    space = make_space((0, -500))
+    add_box(space, 60, 300)
+    for i in range(60):
+        place = 18 * (i % 6) - 45 + i % 5, 10 + 14 * (i // 6)
+        add_ellipse(space, 9, 3 + i % 3, place, 0.7 * i)
+    for i in range(6):
+        body = add_body(space, (18 * i - 45, 160), 0.3 * i, mass=100, moment=3000)
+        shape = (
+            pymunk.Circle(body, 6),
+            pymunk.Segment(body, (-7, 0), (7, 0), 2),
+            pymunk.Poly.create_box(body, (12, 8), 0.5),
+        )[i % 3]
+        shape.friction = 0.5
+        space.add(shape)
+    space.sleep_time_threshold = 0.5
+    return space
+
+
 def contacts(space):
     """A list that every step's touching pairs are appended to: (first shape, second shape, contact point set, impulse on the second)."""
     seen = []

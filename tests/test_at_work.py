@@ -38,24 +38,10 @@ def run(code, *flags, **variables):
 
 
 PILE = """
-import json, sys
-import pymunk
-from scenes import add_body, add_box, add_ellipse, make_space
+import json
 import pymunk_ellipse
-space = make_space((0, -500), 10)
-add_box(space, 60, 300)
-for i in range(60):
-    place = 18 * (i % 6) - 45 + i % 5, 10 + 14 * (i // 6)
-    add_ellipse(space, 9, 3 + i % 3, place, 0.7 * i)
-for i in range(6):
-    body = add_body(space, (18 * i - 45, 160), 0.3 * i, mass=100, moment=3000)
-    shape = (
-        pymunk.Circle(body, 6), pymunk.Segment(body, (-7, 0), (7, 0), 2),
-        pymunk.Poly.create_box(body, (12, 8), 0.5),
-    )[i % 3]
-    shape.friction = 0.5
-    space.add(shape)
-space.sleep_time_threshold = 0.5
+from scenes import mixed_pile
+space = mixed_pile()
 path = []
 for _ in range(120):
     space.step(1 / 120)

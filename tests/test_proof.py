@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import cffi
-import jitted
 import pymunk
 import pytest
 
@@ -94,15 +93,6 @@ FIELDS = {
         "planes": "a polygon's planes",
         "inline_planes": "a polygon's planes",
     },
-}
-# Second names of the same place.
-ALIASES = {
-    ("Arbiter", "shape_a"): "a",
-    ("Arbiter", "shape_b"): "b",
-    ("Arbiter", "last"): "data",
-    ("Arbiter", "contact"): "contacts",
-    ("Shape", "shape_class"): "klass",
-    ("Shape", "body"): "on_body",
 }
 # What is in several structs.
 PARTS = {
@@ -262,18 +252,3 @@ def test_the_declarations_are_those_of_the_header():
     declare = pytest.importorskip("kernel.declare")
     header = (CHIPMUNK / "structs.h").read_text("utf-8")
     assert declare.declared(header) == (CHIPMUNK / "_declared.py").read_text("utf-8")
-
-
-def test_compiled_code_touches_no_other_field():
-    """All that the compiler looked up."""
-    pytest.importorskip("numba")
-    touched = set()
-    for struct, field in jitted.kernel().fields:
-        # An ellipse's hull begins as a polygon, and has its frames where that has inline planes.
-        kind = "Poly" if struct == "Hull" else struct
-        if field not in ("local", "world", "shape"):
-            touched.add((kind, ALIASES.get((kind, field), field)))
-    known = {(kind, field) for kind, fields in FIELDS.items() for field in fields}
-    parts = {(kind, field) for kind, fields in PARTS.items() for field in fields}
-    assert len(touched) > 40
-    assert touched <= known | parts

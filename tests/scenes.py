@@ -79,7 +79,7 @@ def add_box(space, half_width, height, friction=0.5):
         space.add(wall)
 
 
-def mixed_pile():
+def crowded_pile():
     """Ellipses in a box that fall, with shapes of every other kind upon them, and may fall asleep."""
     space = make_space((0, -500))
     add_box(space, 60, 300)

@@ -4,44 +4,24 @@ import gc
 import json
 import os
 import random
-import subprocess
 import sys
-import textwrap
 import threading
 from math import cos, pi, sin
 from pathlib import Path
 
 import pymunk
 import pytest
+from processes import run_code
 from scenes import add_body, add_box, add_ellipse, add_floor, make_space
 
 from pymunk_ellipse import Ellipse
 from pymunk_ellipse.chipmunk.structs import address
 
-TESTS = Path(__file__).parent
-
-
-def run(code, *flags, **variables):
-    """The last line that some code prints in a process of its own, as JSON, and all that it reports."""
-    environment = {**os.environ, "PYTHONPATH": str(TESTS), **variables}
-    done = subprocess.run(
-        [sys.executable, *flags, "-c", textwrap.dedent(code)],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        cwd=TESTS.parent,
-    )
-    assert done.returncode == 0, done.stderr
-    lines = done.stdout.splitlines()
-    return (json.loads(lines[-1]) if lines else None), done.stderr
-
-
 PILE = """
 import json
 import pymunk_ellipse
-from scenes import mixed_pile
-space = mixed_pile()
+from scenes import crowded_pile
+space = crowded_pile()
 path = []
 for _ in range(120):
     space.step(1 / 120)
@@ -53,7 +33,8 @@ print(json.dumps([pymunk_ellipse.backend(), path]))
 def test_a_pile_moves_alike_in_both_backends():
     paths = {}
     for choice in ("python", "compiled"):
-        (used, paths[choice]), _ = run(PILE, PYMUNK_ELLIPSE_BACKEND=choice)
+        printed, _ = run_code(PILE, PYMUNK_ELLIPSE_BACKEND=choice)
+        used, paths[choice] = json.loads(printed)
         assert used == choice
     start, end = paths["python"][0], paths["python"][-1]
     assert max(abs(a[1] - b[1]) for a, b in zip(start, end, strict=True)) > 50

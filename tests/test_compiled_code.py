@@ -6,7 +6,7 @@ from math import cos, sin
 import jitted
 import pytest
 from pymunk import Transform
-from scenes import mixed_pile
+from scenes import crowded_pile
 from test_proof import FIELDS, PARTS
 
 from pymunk_ellipse import Ellipse
@@ -39,7 +39,7 @@ def numba():
 def test_a_pile_moves_alike(numba):
     def path(kernel):
         with backends.using(kernel):
-            space = mixed_pile()
+            space = crowded_pile()
             places = []
             for _ in range(240):
                 space.step(1 / 120)

@@ -44,13 +44,13 @@ def test_default_is_auto(monkeypatch, built):
 
 def test_auto_without_a_library(monkeypatch):
     monkeypatch.setenv(VARIABLE, "auto")
-    monkeypatch.setattr(backends, "load", lambda: None)
+    monkeypatch.setattr(library, "load", lambda: None)
     assert pymunk_ellipse.backend() == "python"
 
 
 def test_compiled_without_a_library(monkeypatch):
     monkeypatch.setenv(VARIABLE, "compiled")
-    monkeypatch.setattr(backends, "load", lambda: None)
+    monkeypatch.setattr(library, "load", lambda: None)
     with pytest.raises(ImportError, match=f"{VARIABLE} is compiled, but the package"):
         pymunk_ellipse.backend()
 

@@ -42,9 +42,9 @@ class Jitted(Library):
 
         pre_solve = compiled["pre_solve"]
 
-        @cfunc(types.void(types.int64, types.voidptr, types.voidptr))
+        @cfunc(types.void(types.int64, types.int64, types.voidptr))
         def call(arbiter, space, data):
-            pre_solve(arbiter)
+            pre_solve(arbiter, space)
 
         self._call = call
         self.pre_solve = pre_solve_function(call.address)

@@ -15,7 +15,7 @@ CHIPMUNK = Path(structs.__file__).parent
 # Each after those that it contains or points to.
 ALL = (
     *("Vect", "Transform", "Box", "Contact", "Body", "ShapeClass", "Shape", "Circle"),
-    *("Segment", "Poly", "Arbiter", "PointQueryInfo", "SegmentQueryInfo"),
+    *("Segment", "Poly", "Arbiter", "PointQueryInfo", "SegmentQueryInfo", "Space"),
 )
 
 # What the proof says of each field that is read or written, by struct.
@@ -93,6 +93,16 @@ FIELDS = {
         "planes": "a polygon's planes",
         "inline_planes": "a polygon's planes",
     },
+    "Space": {
+        "iterations": "a space's iterations",
+        "gravity": "a space's gravity",
+        "damping": "a space's damping",
+        "collisionSlop": "a space's collision slop",
+        "collisionBias": "a space's collision bias",
+        "collisionPersistence": "a space's collision persistence",
+        "stamp": "a space's stamp",
+        "curr_dt": "a space's time step",
+    },
 }
 # What is in several structs.
 PARTS = {
@@ -155,6 +165,7 @@ def first_difference_with(ffi, monkeypatch):
         ("circle_at", "Circle"),
         ("segment_at", "Segment"),
         ("polygon_at", "Poly"),
+        ("space_at", "Space"),
     ):
         monkeypatch.setattr(
             proof, name, lambda place, kind=kind: ffi.cast(f"{kind} *", place)
@@ -207,6 +218,10 @@ def test_a_number_that_changed_is_named(constant, by, monkeypatch):
         assert found == "a polygon's planes"
     else:
         assert found == CONSTANTS[constant]
+
+
+def test_a_hull_has_room_for_what_an_ellipse_keeps_there():
+    assert structs.ffi.sizeof("Hull") <= structs.ffi.sizeof("Poly")
 
 
 def test_nothing_is_read_behind_a_difference():

@@ -12,7 +12,14 @@ from pathlib import Path
 import pymunk
 import pytest
 from processes import run_code
-from scenes import add_body, add_box, add_ellipse, add_floor, make_space
+from scenes import (
+    add_body,
+    add_box,
+    add_ellipse,
+    add_floor,
+    functions_called,
+    make_space,
+)
 
 from pymunk_ellipse import Ellipse
 from pymunk_ellipse.chipmunk.structs import address
@@ -43,23 +50,6 @@ def test_a_pile_moves_alike_in_both_backends():
 
 
 # Python's part in it
-
-
-def functions_called(function):
-    """How often each Python function is called while a function runs."""
-    called = {}
-
-    def note(frame, event, argument):
-        if event == "call":
-            name = frame.f_code.co_name
-            called[name] = called.get(name, 0) + 1
-
-    sys.setprofile(note)
-    try:
-        function()
-    finally:
-        sys.setprofile(None)
-    return called
 
 
 def small_pile(**options):

@@ -1,23 +1,14 @@
 """The same scene runs the same way twice, and copies follow as closely as those of pymunk's circles."""
 
-import copy
-import pickle
-
 import pymunk
 import pytest
 from processes import run_code
-from scenes import add_body, add_box, add_ellipse, data_in_a_copy, make_space
+from scenes import WAYS, add_body, add_box, add_ellipse, data_in_a_copy, make_space
 
 import pymunk_ellipse
 from pymunk_ellipse import Ellipse
 
 SPACES = [pymunk.Space, pymunk_ellipse.Space]
-
-WAYS = [
-    pytest.param(lambda space: space.copy(), id="copy"),
-    pytest.param(copy.deepcopy, id="deepcopy"),
-    pytest.param(lambda space: pickle.loads(pickle.dumps(space)), id="pickle"),
-]
 
 # Prints every bit of where a mixed pile is in the end.
 RUN = """

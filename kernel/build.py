@@ -70,7 +70,7 @@ def build(targets: Sequence[Target], folder: Path = PACKAGE) -> list[Path]:
     One for this machine is linked by its own C compiler, the others by the registry's (ziglang).
     """
     from kernel.emit import module
-    from pymunk_ellipse.contacts.library import digest
+    from pymunk_ellipse.contacts.library import SUMS, digest, line_in_sums
 
     whole = module()
     sources = digest(PACKAGE)
@@ -81,6 +81,8 @@ def build(targets: Sequence[Target], folder: Path = PACKAGE) -> list[Path]:
         if len(targets) == 1:
             command = system_compiler() or command
         made.append(_link(whole, target, command, sources, folder))
+    sums = [line_in_sums(path.name, path.read_bytes()) for path in made]
+    (folder / SUMS).write_bytes(b"\n".join(sums))
     return made
 
 

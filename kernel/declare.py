@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import cffi
@@ -9,15 +10,17 @@ import cffi
 CHIPMUNK = Path(__file__).parent.parent / "pymunk_ellipse" / "chipmunk"
 
 
-def declared() -> str:
-    """The text of pymunk_ellipse/chipmunk/_declared.py."""
+def declared(structs: str) -> str:
+    """The text of pymunk_ellipse/chipmunk/_declared.py for that of structs.h."""
     ffi = cffi.FFI()
-    ffi.cdef((CHIPMUNK / "structs.h").read_text())
+    ffi.cdef(structs)
     ffi.set_source("pymunk_ellipse.chipmunk._declared", None)
-    place = CHIPMUNK / "_declared.py"
-    ffi.emit_python_code(str(place))
-    return place.read_text()
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder, "_declared.py")
+        ffi.emit_python_code(str(place))
+        return place.read_text()
 
 
 if __name__ == "__main__":
-    declared()
+    text = declared((CHIPMUNK / "structs.h").read_text())
+    (CHIPMUNK / "_declared.py").write_text(text)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
 from ctypes import addressof, create_string_buffer
 from typing import Any
 
@@ -61,18 +62,19 @@ MACHINES = {
 }
 
 
-def module() -> Any:
-    """All entries of the library, and what they call, in one module of LLVM's."""
+def teach_numba(class_at: int) -> None:
+    """Have numba compile the package's functions, and code that calls them find the class of ellipses at an address."""
     compile_structs()
     for python_module in _COMPILED:
         for function in list(vars(python_module).values()):
             own = getattr(function, "__module__", None) == python_module.__name__
             if own and callable(function) and not isinstance(function, type):
                 register_jitable(function)
-    # Numba links what it compiles into this process, where the class must be somewhere.
-    somewhere = create_string_buffer(8)
-    llvm.add_symbol(CLASS_SYMBOL, addressof(somewhere))
+    llvm.add_symbol(CLASS_SYMBOL, class_at)
 
+
+def compiled_entries() -> Iterator[Any]:
+    """Numba's dispatchers of the functions that C calls, each compiled for its arguments."""
     number = types.float64
     word = types.int64
     numbers = types.CPointer(number)
@@ -89,13 +91,21 @@ def module() -> Any:
         (rows.contacts_of_rows, (word, numbers, word, numbers, word, numbers)),
         (rows.nearest_of_rows, (word, numbers, word, numbers, word, numbers)),
     )
-    whole = llvm.parse_assembly("")
     for function, arguments in entries:
-        compiled = numba.njit([arguments], error_model="numpy", _nrt=False)(function)
+        yield numba.njit([arguments], error_model="numpy", _nrt=False)(function)
+
+
+def module() -> Any:
+    """All entries of the library, and what they call, in one module of LLVM's."""
+    # Numba links what it compiles into this process, where the class must be somewhere.
+    somewhere = create_string_buffer(8)
+    teach_numba(addressof(somewhere))
+    whole = llvm.parse_assembly("")
+    for compiled in compiled_entries():
         (result,) = compiled.overloads.values()
         part = llvm.parse_assembly(str(result.library._final_module))
         native = result.fndesc.llvm_func_name
-        part.get_function(native).name = PREFIX + function.__name__
+        part.get_function(native).name = PREFIX + compiled.py_func.__name__
         whole.link_in(llvm.parse_assembly(_without_wrappers(str(part))))
     return whole
 

@@ -1,6 +1,9 @@
-"""The backends that contacts are tested with."""
+"""What tests share: the backends that contacts are tested with, and what must not be left over."""
+
+import sys
 
 import pytest
+import scenes
 
 from pymunk_ellipse.contacts import backend as backends
 from pymunk_ellipse.contacts.library import load
@@ -14,3 +17,21 @@ def backend(request):
         pytest.skip("there is no library for this machine")
     with backends.using(chosen):
         yield request.param
+
+
+@pytest.fixture
+def mistakes(monkeypatch):
+    """What callbacks raise, which pymunk reports but does not pass on; none but what a test expects and clears."""
+    reports = []
+    monkeypatch.setattr(
+        sys, "unraisablehook", lambda report: reports.append(report.exc_value)
+    )
+    yield reports
+    for mistake in reports:
+        raise mistake
+
+
+@pytest.fixture(autouse=True)
+def no_bodies_left():
+    yield
+    scenes.BODIES.clear()

@@ -1,14 +1,37 @@
 """Small scenes that several tests run, and what to measure in them."""
 
+import copy
 import itertools
+import json
+import pickle
+import sys
+from collections import Counter
 from functools import cache
 from math import cos, pi, sin, sqrt
+from pathlib import Path
 
 import pymunk
+import pytest
+from pairs import Placed
 
 from pymunk_ellipse import Ellipse
 
 FLOOR = 1000
+
+PHASES = ("begin", "pre_solve", "post_solve", "separate")
+
+# Ways to copy a space.
+WAYS = [
+    pytest.param(lambda space: space.copy(), id="copy"),
+    pytest.param(copy.deepcopy, id="deepcopy"),
+    pytest.param(lambda space: pickle.loads(pickle.dumps(space)), id="pickle"),
+]
+
+# Exact contacts of some pairs, see pairs.from_reference.
+REFERENCES = json.loads((Path(__file__).parent / "contacts.json").read_text())["cases"]
+
+# A shape does not keep its body alive; these live until the test ends.
+BODIES = []
 
 
 def make_space(gravity=(0, 0), iterations=10, **options):
@@ -28,6 +51,26 @@ def add_body(
     body.angular_velocity = spin
     space.add(body)
     return body
+
+
+def lone_body(x=0.0, y=0.0, angle=0.0):
+    """A body in no space."""
+    body = pymunk.Body(1, 1)
+    BODIES.append(body)
+    body.position = x, y
+    body.angle = angle
+    return body
+
+
+def as_shape(body, shape):
+    """A shape of the references, on a body."""
+    if isinstance(shape, Placed):
+        return Ellipse(body, shape.a, shape.b, (shape.x, shape.y), shape.angle)
+    if len(shape.vertices) == 1:
+        return pymunk.Circle(body, shape.radius, shape.vertices[0])
+    if len(shape.vertices) == 2:
+        return pymunk.Segment(body, *shape.vertices, shape.radius)
+    return pymunk.Poly(body, shape.vertices, radius=shape.radius)
 
 
 def add_ellipse(
@@ -77,6 +120,55 @@ def add_box(space, half_width, height, friction=0.5):
         wall.friction = friction
         wall.collision_type = FLOOR
         space.add(wall)
+
+
+def fill(space, columns, rows, a=8, b=4, spacing=18):
+    """Ellipses in rows, each turned another way."""
+    for i in range(columns):
+        for j in range(rows):
+            x = (i - (columns - 1) / 2) * spacing + (j % 2) * 2 - 1
+            add_ellipse(space, a, b, (x, 10 + j * 14), 0.7 * i + 1.3 * j)
+
+
+def settle(space, seconds=6.0, dt=1 / 120):
+    for _ in range(round(seconds / dt)):
+        space.step(dt)
+
+
+def crowded_pile():
+    """Ellipses in a box that fall, with shapes of every other kind upon them, and may fall asleep."""
+    space = make_space((0, -500))
+    add_box(space, 60, 300)
+    for i in range(60):
+        place = 18 * (i % 6) - 45 + i % 5, 10 + 14 * (i // 6)
+        add_ellipse(space, 9, 3 + i % 3, place, 0.7 * i)
+    for i in range(6):
+        body = add_body(space, (18 * i - 45, 160), 0.3 * i, mass=100, moment=3000)
+        shape = (
+            pymunk.Circle(body, 6),
+            pymunk.Segment(body, (-7, 0), (7, 0), 2),
+            pymunk.Poly.create_box(body, (12, 8), 0.5),
+        )[i % 3]
+        shape.friction = 0.5
+        space.add(shape)
+    space.sleep_time_threshold = 0.5
+    return space
+
+
+def functions_called(function):
+    """How often each Python function is called while a function runs."""
+    called = Counter()
+
+    def note(frame, event, argument):
+        if event == "call":
+            called[frame.f_code.co_name] += 1
+
+    sys.setprofile(note)
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return called
 
 
 def contacts(space):

@@ -4,58 +4,31 @@ import gc
 import json
 import os
 import random
-import subprocess
 import sys
-import textwrap
 import threading
 from math import cos, pi, sin
 from pathlib import Path
 
 import pymunk
 import pytest
-from scenes import add_body, add_box, add_ellipse, add_floor, make_space
+from processes import run_code
+from scenes import (
+    add_body,
+    add_box,
+    add_ellipse,
+    add_floor,
+    functions_called,
+    make_space,
+)
 
 from pymunk_ellipse import Ellipse
 from pymunk_ellipse.chipmunk.structs import address
 
-TESTS = Path(__file__).parent
-
-
-def run(code, *flags, **variables):
-    """The last line that some code prints in a process of its own, as JSON, and all that it reports."""
-    environment = {**os.environ, "PYTHONPATH": str(TESTS), **variables}
-    done = subprocess.run(
-        [sys.executable, *flags, "-c", textwrap.dedent(code)],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        cwd=TESTS.parent,
-    )
-    assert done.returncode == 0, done.stderr
-    lines = done.stdout.splitlines()
-    return (json.loads(lines[-1]) if lines else None), done.stderr
-
-
 PILE = """
-import json, sys
-import pymunk
-from scenes import add_body, add_box, add_ellipse, make_space
+import json
 import pymunk_ellipse
-space = make_space((0, -500), 10)
-add_box(space, 60, 300)
-for i in range(60):
-    place = 18 * (i % 6) - 45 + i % 5, 10 + 14 * (i // 6)
-    add_ellipse(space, 9, 3 + i % 3, place, 0.7 * i)
-for i in range(6):
-    body = add_body(space, (18 * i - 45, 160), 0.3 * i, mass=100, moment=3000)
-    shape = (
-        pymunk.Circle(body, 6), pymunk.Segment(body, (-7, 0), (7, 0), 2),
-        pymunk.Poly.create_box(body, (12, 8), 0.5),
-    )[i % 3]
-    shape.friction = 0.5
-    space.add(shape)
-space.sleep_time_threshold = 0.5
+from scenes import crowded_pile
+space = crowded_pile()
 path = []
 for _ in range(120):
     space.step(1 / 120)
@@ -67,7 +40,8 @@ print(json.dumps([pymunk_ellipse.backend(), path]))
 def test_a_pile_moves_alike_in_both_backends():
     paths = {}
     for choice in ("python", "compiled"):
-        (used, paths[choice]), _ = run(PILE, PYMUNK_ELLIPSE_BACKEND=choice)
+        printed, _ = run_code(PILE, PYMUNK_ELLIPSE_BACKEND=choice)
+        used, paths[choice] = json.loads(printed)
         assert used == choice
     start, end = paths["python"][0], paths["python"][-1]
     assert max(abs(a[1] - b[1]) for a, b in zip(start, end, strict=True)) > 50
@@ -76,23 +50,6 @@ def test_a_pile_moves_alike_in_both_backends():
 
 
 # Python's part in it
-
-
-def functions_called(function):
-    """How often each Python function is called while a function runs."""
-    called = {}
-
-    def note(frame, event, argument):
-        if event == "call":
-            name = frame.f_code.co_name
-            called[name] = called.get(name, 0) + 1
-
-    sys.setprofile(note)
-    try:
-        function()
-    finally:
-        sys.setprofile(None)
-    return called
 
 
 def small_pile(**options):

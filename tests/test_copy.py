@@ -1,11 +1,9 @@
 """Spaces with ellipses, copied and pickled while they run."""
 
-import copy
-import pickle
-
 import pymunk
 import pytest
 from scenes import (
+    WAYS,
     add_body,
     add_box,
     add_ellipse,
@@ -19,12 +17,6 @@ from scenes import (
 from pymunk_ellipse import Ellipse
 
 pytestmark = pytest.mark.usefixtures("backend")
-
-WAYS = [
-    pytest.param(lambda space: space.copy(), id="copy"),
-    pytest.param(copy.deepcopy, id="deepcopy"),
-    pytest.param(lambda space: pickle.loads(pickle.dumps(space)), id="pickle"),
-]
 
 calls = []
 

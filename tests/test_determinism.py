@@ -1,32 +1,19 @@
 """The same scene runs the same way twice, and copies follow as closely as those of pymunk's circles."""
 
-import copy
-import os
-import pickle
-import subprocess
-import sys
-
 import pymunk
 import pytest
-from scenes import add_body, add_box, add_ellipse, data_in_a_copy, make_space
+from processes import run_code
+from scenes import WAYS, add_body, add_box, add_ellipse, data_in_a_copy, make_space
 
 import pymunk_ellipse
 from pymunk_ellipse import Ellipse
 
 SPACES = [pymunk.Space, pymunk_ellipse.Space]
 
-WAYS = [
-    pytest.param(lambda space: space.copy(), id="copy"),
-    pytest.param(copy.deepcopy, id="deepcopy"),
-    pytest.param(lambda space: pickle.loads(pickle.dumps(space)), id="pickle"),
-]
-
 # Prints every bit of where a mixed pile is in the end.
 RUN = """
-import sys
-sys.path.insert(0, sys.argv[1])
 from test_determinism import SPACES, bits, mixed_pile, run
-space = mixed_pile(SPACES[int(sys.argv[2])])
+space = mixed_pile(SPACES[{}])
 run(space, 240)
 print(bits(space))
 """
@@ -101,18 +88,9 @@ def test_twice_in_a_process(make, backend):
 @pytest.mark.parametrize("kind", [0, 1])
 def test_in_two_processes(kind, backend):
     found = [
-        subprocess.run(
-            [sys.executable, "-c", RUN, os.path.dirname(__file__), str(kind)],
-            env={
-                **os.environ,
-                "PYMUNK_ELLIPSE_BACKEND": backend,
-                "PYTHONHASHSEED": seed,
-            },
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=True,
-        ).stdout
+        run_code(RUN.format(kind), PYMUNK_ELLIPSE_BACKEND=backend, PYTHONHASHSEED=seed)[
+            0
+        ]
         for seed in ("1", "2")
     ]
     assert found[0] == found[1]

@@ -1,10 +1,9 @@
 """pymunk's own tests, which it ships, with pymunk_ellipse.Space in the place of pymunk.Space."""
 
 import json
-import subprocess
-import sys
 
 import pytest
+from processes import run
 
 pytest.importorskip("pymunk.tests", reason="this pymunk ships without its tests")
 
@@ -45,21 +44,15 @@ print(json.dumps({
 """
 
 
-def run(package):
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, package],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+def results(package):
+    done = run("-c", RUN, package)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout), done.stderr
 
 
 def test_pymunks_own_tests_pass():
-    expected, _ = run("pymunk")
-    found, report = run("pymunk_ellipse")
+    expected, _ = results("pymunk")
+    found, report = results("pymunk_ellipse")
     assert expected["tests"] > 100
     assert not expected["failed"]
     # Nearly all: a test may name pymunk.Space in a way of its own.

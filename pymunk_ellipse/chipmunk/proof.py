@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
-from math import isclose
+from math import isclose, nan
 from typing import Any
 
 import pymunk
-from pymunk import Transform
+from pymunk import Transform, Vec2d
 
 from .private import ffi as pymunk_ffi
+from .private import lib
 from .structs import (
+    CACHED,
     CIRCLE,
+    FIRST_COLLISION,
+    IGNORE,
     INLINE_VERTICES,
     POLYGON,
     SEGMENT,
@@ -68,21 +73,21 @@ def first_difference(found: Iterable[Finding]) -> str | None:
 
 def findings() -> Iterator[Finding]:
     """All fields that are used."""
-    yield from _arbiter()
+    yield from _declared_by_pymunk()
     yield from _classes()
     yield from _body()
     yield from _circle()
     yield from _segment()
     yield from _polygon()
     yield from _space()
+    yield from _class_functions()
 
 
 def _pair(vector: Any) -> tuple[float, float]:
     return vector.x, vector.y
 
 
-def _arbiter() -> Iterator[Finding]:
-    # pymunk declares these two structs itself.
+def _declared_by_pymunk() -> Iterator[Finding]:
     for ours, theirs, fields in (
         ("Contact", "struct cpContact", ("r1", "r2", "jnAcc", "jtAcc", "hash")),
         (
@@ -93,13 +98,32 @@ def _arbiter() -> Iterator[Finding]:
                 *("count", "contacts", "n", "state", "processCollision"),
             ),
         ),
+        (
+            "PointQueryInfo",
+            "cpPointQueryInfo",
+            ("shape", "point", "distance", "gradient"),
+        ),
+        (
+            "SegmentQueryInfo",
+            "cpSegmentQueryInfo",
+            ("shape", "point", "normal", "alpha"),
+        ),
     ):
         for field in fields:
             yield (
-                f"a {theirs.split()[1]}'s {field}",
+                f"a {theirs.split()[-1]}'s {field}",
                 ffi.offsetof(ours, field),
                 pymunk_ffi.offsetof(theirs, field),
             )
+    yield (
+        "an arbiter's states",
+        (FIRST_COLLISION, IGNORE, CACHED),
+        (
+            lib.CP_ARBITER_STATE_FIRST_COLLISION,
+            lib.CP_ARBITER_STATE_IGNORE,
+            lib.CP_ARBITER_STATE_CACHED,
+        ),
+    )
 
 
 def _classes() -> Iterator[Finding]:
@@ -190,8 +214,10 @@ def _polygon() -> Iterator[Finding]:
         (6.0, 6.5),
         (1.0, 8.5),
         (-5.5, 6.0),
+        (-8.5, 2.0),
         (-7.5, -3.0),
         (2.5, -9.5),
+        (5.0, -8.0),
     ]
     for count in (INLINE_VERTICES, 3):
         polygon = pymunk.Poly(None, corners[:count], radius=7.25)
@@ -213,7 +239,7 @@ def _polygon() -> Iterator[Finding]:
             normal = (local[i - 1] - vertex).normalized().perpendicular()
             plane = tuple(planes[k] for k in range(k, k + 4))
             yield "a polygon's local vertices and normals", plane, (*vertex, *normal)
-    many = pymunk.Poly(None, [*corners, (5.0, -8.0)])
+    many = pymunk.Poly(None, corners[: INLINE_VERTICES + 1])
     found = polygon_at(many._shape)
     outside = address(found.planes) != address(found.inline_planes)
     yield "how many planes are inline in a polygon", outside, True
@@ -238,3 +264,36 @@ def _space() -> Iterator[Finding]:
     yield "a space's collision persistence", found.collisionPersistence, 5
     yield "a space's stamp", found.stamp, 3
     yield "a space's time step", (found.curr_dt,), (0.125,)
+
+
+def _class_functions() -> Iterator[Finding]:
+    # With one function of the circles a segment answers the call of that one, and no other, as a
+    # circle: where it keeps a circle's middle and radius it has a, then b, and the x of its normal.
+    segment = pymunk.Segment(None, (1.5, 2.5), (4.5, 6.5), 0.25)
+    found = shape_at(segment._shape)
+    circles = shape_at(pymunk.Circle(None, 1.0)._shape).shape_class
+    middle = _TRANSFORM @ segment.a
+    above = middle + Vec2d(0.0, 10.0)
+    corner = Vec2d(0.8, 0.8)
+    with _borrowed(found, "cache_data", circles):
+        box = tuple(segment.update(_TRANSFORM))
+    yield "a class's cache_data", box, (*(middle - corner), *(middle + corner))
+    with _borrowed(found, "point_query", circles):
+        distance = segment.point_query(above).distance
+    yield "a class's point_query", (distance,), (9.2,)
+    with _borrowed(found, "segment_query", circles):
+        hit = segment.segment_query(above, middle)
+    yield "a class's segment_query", (hit.alpha if hit else nan,), (0.92,)
+
+
+@contextmanager
+def _borrowed(shape: Any, function: str, lender: Any) -> Iterator[None]:
+    """Give a C shape its class with one function of another class for a while."""
+    own = shape.klass
+    mixed = ffi.new("ShapeClass *", shape.shape_class[0])
+    setattr(mixed, function, getattr(lender, function))
+    shape.klass = address(mixed)
+    try:
+        yield
+    finally:
+        shape.klass = own

@@ -6,12 +6,11 @@ import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pymunk
 
 from ..chipmunk.private import box_query_function, pre_solve_function
-from ..chipmunk.proof import prove_structs
 from ..chipmunk.shape_class import (
     cast_now,
     collect_touched,
@@ -23,9 +22,11 @@ from ..chipmunk.structs import address, ffi, hull_at, set_ellipse_class, shape_a
 from ..narrowphase.cast import Hit
 from ..narrowphase.nearest import Nearest
 from ..narrowphase.rows import contacts_of_rows, nearest_of_rows
-from .library import Library, Unusable, load
 from .pair import ShapeContact, shape_contact
 from .resolver import pre_solve
+
+if TYPE_CHECKING:
+    from .library import Library
 
 VARIABLE = "PYMUNK_ELLIPSE_BACKEND"
 
@@ -108,7 +109,7 @@ def _in_lists(
     result.ravel()[:] = numbers
 
 
-Kernel = Library | Python
+Kernel: TypeAlias = "Library | Python"
 
 
 def wanted() -> str:
@@ -131,6 +132,9 @@ def choose() -> Kernel:
     choice = wanted()
     if choice == "python":
         return Python()
+    # Not when the package is imported, as this imports twice as much as all the rest does.
+    from .library import Unusable, load
+
     try:
         library = load()
         problem = "the package has no library for this machine"
@@ -169,6 +173,8 @@ def use(chosen: Kernel) -> None:
     Raises RuntimeError where pymunk's structs are not as known.
     """
     global _kernel
+    from ..chipmunk.proof import prove_structs
+
     prove_structs()
     if chosen.name not in _classes:
         box = pymunk.Poly.create_box(None)

@@ -6,6 +6,7 @@ import ctypes
 import hashlib
 from atexit import register
 from contextlib import ExitStack
+from functools import cached_property
 from importlib.resources import as_file, files
 from typing import Any
 
@@ -25,6 +26,9 @@ SOURCES = (
     "contacts/resolver.py",
     "narrowphase",
 )
+
+# Lists the libraries beside it as they were built, in the format of sha256sum.
+SUMS = "_kernel-sums.txt"
 
 _PACKAGE = __package__.rpartition(".")[0]
 
@@ -52,6 +56,11 @@ def digest(package: Any) -> str | None:
     return found.hexdigest()
 
 
+def line_in_sums(name: str, library: bytes) -> bytes:
+    """The line that SUMS has for a library of this name."""
+    return f"{hashlib.sha256(library).hexdigest()}  {name}".encode()
+
+
 class Library:
     """The kernel in compiled code. The functions take C shapes of pymunk's."""
 
@@ -60,16 +69,24 @@ class Library:
     def __init__(self, path: str) -> None:
         # ctypes never unloads a library, and at the interpreter's exit shapes are freed after modules.
         ctypes.CDLL(path)
-        self._lib = lib = ffi.dlopen(path)
-        place = ffi.addressof(lib, "pe_pre_solve")
-        self.pre_solve = pre_solve_function(address(place))
-        place = ffi.addressof(lib, "pe_collect_touched")
-        self.collect_touched = box_query_function(address(place))
+        self._lib = ffi.dlopen(path)
 
     def digest(self) -> str:
         """The hash of the sources that it was built from."""
         text: bytes = ffi.string(self._lib.pe_digest())
         return text.decode()
+
+    @cached_property
+    def pre_solve(self) -> Any:
+        """What Chipmunk calls to resolve a contact."""
+        place = ffi.addressof(self._lib, "pe_pre_solve")
+        return pre_solve_function(address(place))
+
+    @cached_property
+    def collect_touched(self) -> Any:
+        """What Chipmunk calls for each shape near a wide ray; see chipmunk.shape_class."""
+        place = ffi.addressof(self._lib, "pe_collect_touched")
+        return box_query_function(address(place))
 
     def make_class(self, polygons: Any) -> int:
         """Make the class of ellipses from that of polygons; returns its address."""
@@ -148,7 +165,7 @@ class Unusable(Exception):
 def load() -> Library | None:
     """The library for this machine, None if the package has none for it.
 
-    Raises Unusable for one that does not load, or was built from other sources.
+    Raises Unusable for one that is damaged, does not load, or was built from other sources.
     """
     package = files(_PACKAGE)
     name = own_library_name()
@@ -156,6 +173,13 @@ def load() -> Library | None:
     if not source.is_file():
         return None
     try:
+        # A file that lacks its end may load, and crash where that is read. A frozen program has no
+        # sums, because what freezes it may sign the library.
+        sums = package.joinpath(SUMS)
+        if sums.is_file():
+            line = line_in_sums(name, source.read_bytes())
+            if line not in sums.read_bytes().splitlines():
+                raise Unusable(f"{name} is damaged: {SUMS} has another sum for it")
         library = Library(str(_unpacked.enter_context(as_file(source))))
     except OSError as error:
         raise Unusable(f"{name} does not load: {error}") from error

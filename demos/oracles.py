@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from math import cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
+
+Vector = tuple[float, float]
 
 # A rate of change of a state of several numbers.
 Rate = Callable[[tuple[float, ...]], tuple[float, ...]]
@@ -15,6 +18,13 @@ Rate = Callable[[tuple[float, ...]], tuple[float, ...]]
 def height(a: float, b: float, angle: float) -> float:
     """How high the centre of an ellipse is that lies on a floor: its support function straight down."""
     return hypot(a * sin(angle), b * cos(angle))
+
+
+@cache
+def gauss_legendre(nodes: int) -> tuple[list[float], list[float]]:
+    """Places in (-1, 1) and weights that integrate polynomials exactly."""
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    return places.tolist(), weights.tolist()
 
 
 def runge_kutta(
@@ -46,14 +56,14 @@ class Rolling:
     Its centre of gravity is at offset from its centre, along a and along b. Without a square of
     the radius of gyration it is a homogeneous ellipse about its centre.
 
-    With h the height of the centre of gravity at an angle, the contact point is h' beside it
-    and h below it, so that the energy of a unit of mass is (k^2 + h^2 + h'^2) w^2/2 + g h.
+    With h the height of the centre of gravity at an angle, the contact point is h' to the left
+    of it and h below it, so that the energy of a unit of mass is (k^2 + h^2 + h'^2) w^2/2 + g h.
     """
 
     a: float
     b: float
     gravity: float
-    offset: tuple[float, float] = (0.0, 0.0)
+    offset: Vector = (0.0, 0.0)
     square: float | None = None
 
     def height(self, angle: float) -> float:
@@ -62,7 +72,7 @@ class Rolling:
         return height(self.a, self.b, angle) + x * sin(angle) + y * cos(angle)
 
     def slope(self, angle: float) -> float:
-        """The change of the height by the angle: how far beside the centre of gravity the floor is touched."""
+        """The change of the height by the angle: how far to the left of the centre of gravity the floor is touched."""
         x, y = self.offset
         across = (self.a**2 - self.b**2) * sin(angle) * cos(angle)
         lever = across / height(self.a, self.b, angle)
@@ -95,14 +105,14 @@ class Rolling:
         The energy gives w^2 = 2 g (h(start) - h(t))/(k^2 + h^2 + h'^2); with t = start + u^2
         the integrand 1/w is smooth, and Gauss and Legendre's rule converges fast.
         """
-        places, weights = np.polynomial.legendre.leggauss(nodes)
+        places, weights = gauss_legendre(nodes)
         widest = sqrt(abs(end - start))
         total = 0.0
         for place, weight in zip(places, weights, strict=True):
-            u = widest * (float(place) + 1.0) / 2.0
+            u = widest * (place + 1.0) / 2.0
             angle = start + u * u * (1.0 if end > start else -1.0)
             fallen = 2.0 * self.gravity * self.drop(start, angle)
-            total += float(weight) * 2.0 * u * sqrt(self.inertia(angle) / fallen)
+            total += weight * 2.0 * u * sqrt(self.inertia(angle) / fallen)
         return total * widest / 2.0
 
     def period(self, tilt: float) -> float:
@@ -126,7 +136,7 @@ class Rolling:
         end = runge_kutta((angle, spin, 0.0), self._rate, seconds, count)
         return end[0], end[1], end[2]
 
-    def velocity(self, angle: float, spin: float) -> tuple[float, float]:
+    def velocity(self, angle: float, spin: float) -> Vector:
         """Of the centre of gravity (x, y)."""
         return -spin * self.height(angle), spin * self.slope(angle)
 
@@ -150,26 +160,29 @@ class Flyer:
         """Of the radius of gyration."""
         return (self.a**2 + self.b**2) / 4.0
 
-    def after(self, seconds: float, gravity: float = 0.0) -> Flyer:
+    def after(self, seconds: float, gravity: Vector = (0.0, 0.0)) -> Flyer:
         """Some time later, if it hits nothing."""
+        vx = self.vx + gravity[0] * seconds
+        vy = self.vy + gravity[1] * seconds
         return replace(
             self,
-            x=self.x + self.vx * seconds,
-            y=self.y + (self.vy - gravity * seconds / 2.0) * seconds,
+            x=self.x + (self.vx + vx) / 2.0 * seconds,
+            y=self.y + (self.vy + vy) / 2.0 * seconds,
             angle=self.angle + self.spin * seconds,
-            vy=self.vy - gravity * seconds,
+            vx=vx,
+            vy=vy,
         )
 
-    def energy(self, gravity: float = 0.0) -> float:
+    def energy(self, gravity: Vector = (0.0, 0.0)) -> float:
         moving = (self.vx**2 + self.vy**2 + self.square * self.spin**2) / 2.0
-        return self.mass * (moving + gravity * self.y)
+        return self.mass * (moving - gravity[0] * self.x - gravity[1] * self.y)
 
     def angular_momentum(self) -> float:
         """About the origin."""
         orbit = self.x * self.vy - self.y * self.vx
         return self.mass * (orbit + self.square * self.spin)
 
-    def support(self, nx: float, ny: float) -> tuple[float, float]:
+    def support(self, nx: float, ny: float) -> Vector:
         """From the centre to the farthest point in the direction (nx, ny)."""
         c, s = cos(self.angle), sin(self.angle)
         u, v = self.a * (c * nx + s * ny), self.b * (c * ny - s * nx)
@@ -178,7 +191,7 @@ class Flyer:
         v *= self.b / size
         return c * u - s * v, s * u + c * v
 
-    def velocity_at(self, px: float, py: float) -> tuple[float, float]:
+    def velocity_at(self, px: float, py: float) -> Vector:
         """Of the point (px, py) from the centre."""
         return self.vx - self.spin * py, self.vy + self.spin * px
 
@@ -192,25 +205,28 @@ class Flyer:
         )
 
 
-def half_a_step_on(body: Flyer, dt: float, gravity: float) -> Flyer:
+def half_a_step_on(body: Flyer, dt: float, gravity: Vector) -> Flyer:
     """A body as Chipmunk has it: its velocity is that of half a step on.
 
     A step of Chipmunk moves the positions by the velocities, then changes the velocities: a
     leapfrog method. One that starts with both at one time is off by half a step ever after.
     """
-    return replace(body, vy=body.vy - gravity * dt / 2.0)
+    later = body.after(dt / 2.0, gravity)
+    return replace(body, vx=later.vx, vy=later.vy)
 
 
 def hit(
     bodies: tuple[Flyer, ...],
-    normal: tuple[float, float],
+    normal: Vector,
     elasticity: float,
     friction: float,
 ) -> tuple[Flyer, ...]:
     """Two bodies, or one and what does not move, after their impact; the unit normal leads to the last from the other.
 
-    The normal velocity is reversed, times the elasticity. Friction stops the tangential
-    velocity, or brakes it by as much as the coefficient times the normal impulse.
+    Newton's law, as Chipmunk has it: the normal velocity is reversed, times the elasticity.
+    Friction stops the tangential velocity, or brakes it by as much as the coefficient times the
+    normal impulse. With both, an impact off the centre may gain energy (T. R. Kane and D. A.
+    Levinson, "Dynamics: Theory and Applications", 1985).
     """
     nx, ny = normal
     tx, ty = -ny, nx
@@ -246,15 +262,20 @@ def hit(
 
 
 def first_root(
-    function: Callable[[float], float], end: float, step: float = 1e-3
+    function: Callable[[float], float],
+    end: float,
+    fastest: float = inf,
+    step: float = 1e-3,
 ) -> float:
-    """Where a function that is positive at first becomes negative: infinity if it does not before the end.
+    """Where a function that is zero or positive at first becomes negative: infinity if it does not before the end.
 
-    A visit below zero that is shorter than the step may be missed.
+    It falls by no more than fastest in a unit of its argument. A visit below zero that is
+    shorter than the step may be missed.
     """
-    start = 0.0
+    # Not where two that part just touch: there the sign is one of roundoff.
+    start = 1e-6 * step
     while start < end:
-        stop = min(start + step, end)
+        stop = min(start + max(step, function(start) / fastest), end)
         if function(stop) < 0.0:
             # Down to neighbouring numbers.
             while start < (middle := (start + stop) / 2.0) < stop:
@@ -267,7 +288,7 @@ def first_root(
     return inf
 
 
-def time_to_floor(body: Flyer, gravity: float, end: float) -> float:
+def time_to_floor(body: Flyer, gravity: Vector, end: float) -> float:
     """When a body that is above the floor y = 0, or leaves it, comes to it."""
 
     def gap(time: float) -> float:
@@ -278,7 +299,7 @@ def time_to_floor(body: Flyer, gravity: float, end: float) -> float:
 
 
 def bouncing(
-    body: Flyer, seconds: float, gravity: float, elasticity: float, friction: float
+    body: Flyer, seconds: float, gravity: Vector, elasticity: float, friction: float
 ) -> tuple[Flyer, int]:
     """A body some time later, and how often it has hit the floor."""
     hits = 0
@@ -292,8 +313,9 @@ def bouncing(
 
 def landing(body: Flyer, seconds: float, gravity: float) -> tuple[float, float, float]:
     """Angle, spin and place of a body that has landed without bounce and slip, and rolled on, some time later."""
-    time = time_to_floor(body, gravity, seconds)
-    (landed,) = hit((body.after(time, gravity),), (0.0, 1.0), 0.0, inf)
+    down = 0.0, -gravity
+    time = time_to_floor(body, down, seconds)
+    (landed,) = hit((body.after(time, down),), (0.0, 1.0), 0.0, inf)
     rolling = Rolling(body.a, body.b, gravity)
     angle, spin, way = rolling.after(landed.angle, landed.spin, seconds - time)
     return angle, spin, landed.x + way
@@ -339,8 +361,13 @@ def colliding(
         first, second = later(time)
         return distance(first, second)[0]
 
+    def fastest() -> float:
+        first, second = pair
+        along = hypot(second.vx - first.vx, second.vy - first.vy)
+        return along + sum(body.a * abs(body.spin) for body in pair)
+
     hits = 0
-    while (time := first_root(gap, seconds)) < seconds:
+    while (time := first_root(gap, seconds, fastest())) < seconds:
         first, second = later(time)
         _, nx, ny = distance(first, second)
         pair = hit((first, second), (nx, ny), elasticity, friction)

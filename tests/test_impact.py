@@ -8,7 +8,7 @@ from math import cos, hypot, inf, pi, sin
 
 import pytest
 
-from demos.oracles import Flyer, Rolling, half_a_step_on, hit
+from demos._oracles import Flyer, Rolling, half_a_step_on, hit
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 from pymunk_ellipse.narrowphase.impact import (
     carried_on,

@@ -7,7 +7,7 @@ from math import inf, pi, sqrt
 
 import pytest
 
-from demos.oracles import (
+from demos._oracles import (
     Flyer,
     Rolling,
     bouncing,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pymunk
-from pymunk import Shape, Space
+from pymunk import Body, Shape, Space
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk._collision_handler import CollisionHandler
 from pymunk._util import _dead_ref
@@ -51,6 +51,16 @@ def call_compiled(handler: Any, pre_solve: Any) -> None:
 def pre_solve_function(place: int) -> Any:
     """The C function at an address, as collision handlers hold it."""
     return ffi.cast("cpCollisionPreSolveFunc", place)
+
+
+def c_space(space: Space) -> Any:
+    """The cpSpace of a space."""
+    return space._space
+
+
+def c_body(body: Body) -> Any:
+    """The cpBody of a body."""
+    return body._body
 
 
 def shape_behind(cp_shape: Any) -> Shape:

@@ -21,6 +21,7 @@ SOURCES = (
     "chipmunk/structs.h",
     "chipmunk/shape_class.py",
     "contacts/handover.py",
+    "contacts/impacts.py",
     "contacts/pair.py",
     "contacts/resolver.py",
     "narrowphase",
@@ -61,8 +62,10 @@ class Library:
         # ctypes never unloads a library, and at the interpreter's exit shapes are freed after modules.
         ctypes.CDLL(path)
         self._lib = lib = ffi.dlopen(path)
-        place = ffi.addressof(lib, "pe_pre_solve")
-        self.pre_solve = pre_solve_function(address(place))
+        self.pre_solve, self.pre_solve_with_impacts = (
+            pre_solve_function(address(ffi.addressof(lib, name)))
+            for name in ("pe_pre_solve", "pe_pre_solve_with_impacts")
+        )
 
     def digest(self) -> str:
         """The hash of the sources that it was built from."""
@@ -72,6 +75,14 @@ class Library:
     def make_class(self, polygons: Any) -> int:
         """Make the class of ellipses from that of polygons; returns its address."""
         return address(self._lib.pe_shape_class(polygons))
+
+    def resolve(self, arbiter: Any, space: Any, exact_impacts: bool) -> None:
+        """See contacts.resolver."""
+        self._lib.pe_resolve(arbiter, space, exact_impacts)
+
+    def complete(self, arbiter: Any, space: Any) -> None:
+        """See contacts.resolver."""
+        self._lib.pe_complete(arbiter, space)
 
     def shape_contact(self, ellipse: Any, shape: Any) -> ShapeContact:
         """See contacts.pair."""

@@ -193,6 +193,25 @@ def test_rolling_is_no_impact(dt):
     assert hypot(*arm) > 10.0
 
 
+@pytest.mark.parametrize("dt", [1 / 30, 1 / 60, 1 / 240])
+def test_what_has_not_touched_for_a_step_is_no_impact(dt):
+    """An ellipse that has rolled on nothing for a step comes down no faster than what lasts."""
+    rolling = Rolling(20.0, 10.0, 500.0)
+    floor = 0.0, 0.0, 0.0, 0.0, 0.0
+    for angle in (0.0, 0.3, 1.0, pi / 2, 2.0):
+        spin = 5.0
+        x, y = rolling.velocity(angle, spin)
+        left = Flyer(20.0, 10.0, 0.0, rolling.height(angle), angle, x, y, spin)
+        back = left.after(dt, (0.0, -500.0))
+        px, py = back.support(0.0, -1.0)
+        meeting = (0.0, 0.0, -1.0, px, py, px, py)
+        un, _ut = relative_velocity(motion(back), floor, meeting)
+        radius = (20.0 * 10.0) ** 2 / rolling.height(back.angle) ** 3
+        speed = lasting_speed(motion(back), floor, meeting, radius, 0.0, 500.0, dt)
+        # To the order of the step.
+        assert -un < speed * (1 + 10 * dt)
+
+
 def test_a_throw_is_an_impact():
     body, floor = (0.0, 0.0, 0.0, -30.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
     meeting = -0.1, 0.0, -1.0, 0.0, -10.0, 0.0, 0.0

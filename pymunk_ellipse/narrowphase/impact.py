@@ -42,20 +42,25 @@ def lasting_speed(
     gravity: float,
     dt: float,
 ) -> float:
-    """How fast two shapes can approach in a contact that is new, but no impact.
+    """How fast two shapes can approach in a contact that is new, but no impact: one that is handed over, from a tile to the next.
 
-    A contact that lasts gains at most this speed in a step: gravity times the step, and what
-    rolling for half of it gives. So one that is handed over, from a segment to the next, is not
-    taken for an impact. The radii of curvature are those where the shapes touch, zero for corners.
+    A contact that lasts gains the speed of gravity in a step, and two of rolling, for each body
+    with a spin w, a radius of curvature rho (zero for corners) and its centre of gravity at the
+    height h above the tangent: w^2 rho dt/2, because it rolls about where it will touch in the
+    middle of the step, or w^2 (rho - h) dt if for a step it touched nothing, h'' being rho - h.
     """
-    _distance, _nx, _ny, x, y, ox, oy = meeting
+    _distance, nx, ny, x, y, ox, oy = meeting
     spin = one[4]
     other_spin = other[4]
-    rolling = spin * spin * (sqrt(x * x + y * y) + curvature_radius)
+    height = x * nx + y * ny
+    other_height = -(ox * nx + oy * ny)
+    rolling = spin * spin * max(0.5 * curvature_radius, curvature_radius - height)
     other_rolling = (
-        other_spin * other_spin * (sqrt(ox * ox + oy * oy) + other_curvature_radius)
+        other_spin
+        * other_spin
+        * max(0.5 * other_curvature_radius, other_curvature_radius - other_height)
     )
-    return (gravity + 0.5 * (rolling + other_rolling)) * dt
+    return (gravity + rolling + other_rolling) * dt
 
 
 def relative_velocity(

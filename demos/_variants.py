@@ -9,10 +9,11 @@ from types import ModuleType
 from typing import Any
 
 import pymunk_ellipse.contacts.backend as backends
+import pymunk_ellipse.contacts.pair as pair
 import pymunk_ellipse.contacts.resolver as resolver
 import pymunk_ellipse.narrowphase.ellipse_ellipse as ellipse_ellipse
 import pymunk_ellipse.narrowphase.ellipse_polygon as ellipse_polygon
-from pymunk_ellipse.chipmunk.structs import arbiter_at
+from pymunk_ellipse.chipmunk.structs import arbiter_at, hull_at
 from pymunk_ellipse.contacts.handover import LastContact
 from pymunk_ellipse.narrowphase.ellipse_ellipse import Contact
 from pymunk_ellipse.narrowphase.frame import Frame
@@ -35,16 +36,16 @@ def replaced(*replacements: tuple[ModuleType, str, Any]) -> Iterator[None]:
 @contextmanager
 def without_warm_start() -> Iterator[None]:
     """No contact takes over the impulses of the last step."""
-    whole = backends.pre_solve
+    whole = backends.resolve
 
-    def pre_solve(address: int, space: int) -> None:
-        whole(address, space)
+    def resolve(address: int, *arguments: Any) -> None:
+        whole(address, *arguments)
         arbiter = arbiter_at(address)
         if arbiter.data:
             arbiter.contact.jnAcc = 0.0
             arbiter.contact.jtAcc = 0.0
 
-    with replaced((backends, "pre_solve", pre_solve)):
+    with replaced((backends, "resolve", resolve)):
         yield
 
 
@@ -56,6 +57,29 @@ def without_rolling() -> Iterator[None]:
         return 0.0, 0.0
 
     with replaced((resolver, "rolling_velocity", rolling_velocity)):
+        yield
+
+
+@contextmanager
+def with_elastic_rolling() -> Iterator[None]:
+    """Restitution reverses the velocity of rolling as well."""
+
+    def with_restitution(x: float, y: float, *_: float) -> tuple[float, float]:
+        return x, y
+
+    with replaced((resolver, "with_restitution", with_restitution)):
+        yield
+
+
+@contextmanager
+def without_rolling_of_wheels() -> Iterator[None]:
+    """Contacts of round ellipses roll about where they touch as the step begins, wherever the centre of gravity is."""
+
+    def rolls_as_circle(shape: Any, body: Any) -> bool:
+        local = hull_at(shape).local
+        return bool(local[0] == local[1])
+
+    with replaced((resolver, "rolls_as_circle", rolls_as_circle)):
         yield
 
 
@@ -99,7 +123,7 @@ def with_published_fit() -> Iterator[None]:
         py = circle.y + circle.radius * ny - first[5]
         return -fit.depth, nx, ny, px, py
 
-    with replaced((resolver, "ellipse_ellipse", contact)):
+    with replaced((pair, "ellipse_ellipse", contact)):
         yield
 
 
@@ -120,6 +144,8 @@ VARIANTS: dict[str, Callable[[], Any]] = {
     "published fit": with_published_fit,
     "no warm start": without_warm_start,
     "no rolling correction": without_rolling,
+    "elastic rolling": with_elastic_rolling,
+    "no rolling of wheels": without_rolling_of_wheels,
     "no handover": without_handover,
     "no sweep": without_sweep,
 }

@@ -22,13 +22,14 @@ from numba.extending import register_jitable
 
 from kernel.numba_structs import CLASS_SYMBOL, compile_structs, struct
 from pymunk_ellipse.chipmunk import shape_class
-from pymunk_ellipse.contacts import handover, pair, resolver
+from pymunk_ellipse.contacts import handover, impacts, pair, resolver
 from pymunk_ellipse.narrowphase import (
     cast,
     common_normal,
     ellipse_ellipse,
     ellipse_polygon,
     frame,
+    impact,
     nearest,
     rolling,
     rows,
@@ -40,12 +41,14 @@ _COMPILED = (
     ellipse_ellipse,
     ellipse_polygon,
     frame,
+    impact,
     nearest,
     rolling,
     rows,
     shape_class,
     pair,
     handover,
+    impacts,
     resolver,
 )
 
@@ -80,7 +83,8 @@ def compiled_entries() -> Iterator[Any]:
     numbers = types.CPointer(number)
     hull = struct("Hull")
     entries: tuple[tuple[Any, tuple[Any, ...]], ...] = (
-        (resolver.pre_solve, (types.int64, types.int64)),
+        (resolver.resolve, (types.int64, types.int64, types.boolean)),
+        (resolver.complete, (types.int64, types.int64)),
         (shape_class.cache_data, (hull, number, number, number, number)),
         (shape_class.nearest_updated, (hull, number, number)),
         (shape_class.cast_updated, (hull, *[number] * 5)),

@@ -16,7 +16,8 @@ int _fltused = 0;
 #endif
 
 /* Numba's convention: a place for the result, one for an exception, then the arguments. */
-int pe_native_pre_solve(void *, void **, int64_t, int64_t);
+int pe_native_resolve(void *, void **, int64_t, int64_t, uint8_t);
+int pe_native_complete(void *, void **, int64_t, int64_t);
 int pe_native_cache_data(double *, void **, void *, double, double, double, double);
 int pe_native_nearest_updated(double *, void **, void *, double, double);
 int pe_native_cast_updated(double *, void **, void *, double, double, double, double, double);
@@ -71,10 +72,26 @@ EXPORTED void *pe_shape_class(const void *of_polygons) {
     return &pe_ellipse_class;
 }
 
-EXPORTED void pe_pre_solve(void *arbiter, void *space, void *data) {
+EXPORTED void pe_resolve(void *arbiter, void *space, int exact_impacts) {
     void *result = 0, *exception = 0;
+    pe_native_resolve(&result, &exception, (intptr_t)arbiter, (intptr_t)space, exact_impacts != 0);
+}
+
+EXPORTED void pe_complete(void *arbiter, void *space) {
+    void *result = 0, *exception = 0;
+    pe_native_complete(&result, &exception, (intptr_t)arbiter, (intptr_t)space);
+}
+
+EXPORTED void pe_pre_solve(void *arbiter, void *space, void *data) {
     (void)data;
-    pe_native_pre_solve(&result, &exception, (intptr_t)arbiter, (intptr_t)space);
+    pe_resolve(arbiter, space, 0);
+    pe_complete(arbiter, space);
+}
+
+EXPORTED void pe_pre_solve_with_impacts(void *arbiter, void *space, void *data) {
+    (void)data;
+    pe_resolve(arbiter, space, 1);
+    pe_complete(arbiter, space);
 }
 
 EXPORTED void pe_shape_contact(void *ellipse, void *shape, double *result) {

@@ -71,6 +71,13 @@ def is_masked(value: Any) -> bool:
 REAL_KINDS = ("b", "i", "u", "f")
 
 
+def switch(name: str, value: Any) -> bool:
+    """value, which must be a bool."""
+    if not isinstance(value, bool):
+        raise TypeError(f"{name} must be True or False, got {value!r}")
+    return value
+
+
 def point(name: str, value: Any) -> Vec2d:
     """value as a vector of two finite floats.
 

@@ -40,14 +40,23 @@ class Jitted(Library):
         finally:
             numba_structs._Attributes.generic_resolve = look_up
 
-        pre_solve = compiled["pre_solve"]
+        resolve = compiled["resolve"]
+        complete = compiled["complete"]
+        signature = types.void(types.int64, types.int64, types.voidptr)
 
-        @cfunc(types.void(types.int64, types.int64, types.voidptr))
+        @cfunc(signature)
         def call(arbiter, space, data):
-            pre_solve(arbiter, space)
+            resolve(arbiter, space, False)
+            complete(arbiter, space)
 
-        self._call = call
+        @cfunc(signature)
+        def call_with_impacts(arbiter, space, data):
+            resolve(arbiter, space, True)
+            complete(arbiter, space)
+
+        self._calls = call, call_with_impacts
         self.pre_solve = pre_solve_function(call.address)
+        self.pre_solve_with_impacts = pre_solve_function(call_with_impacts.address)
 
         def on_hull(function):
             """A function of a hull, as one of an address that Python can call."""

@@ -15,7 +15,8 @@ CHIPMUNK = Path(structs.__file__).parent
 # Each after those that it contains or points to.
 ALL = (
     *("Vect", "Transform", "Box", "Contact", "Body", "ShapeClass", "Shape", "Circle"),
-    *("Segment", "Poly", "Arbiter", "PointQueryInfo", "SegmentQueryInfo", "Space"),
+    *("Segment", "Poly", "Arbiter", "PointQueryInfo", "SegmentQueryInfo"),
+    *("CollisionHandler", "Space"),
 )
 
 # What the proof says of each field that is read or written, by struct.
@@ -23,11 +24,16 @@ FIELDS = {
     "Contact": {
         "r1": "a cpContact's r1",
         "r2": "a cpContact's r2",
+        "nMass": "a cpContact's nMass",
+        "tMass": "a cpContact's tMass",
+        "bounce": "a cpContact's bounce",
         "jnAcc": "a cpContact's jnAcc",
         "jtAcc": "a cpContact's jtAcc",
         "hash": "a cpContact's hash",
     },
     "Arbiter": {
+        "e": "a cpArbiter's e",
+        "u": "a cpArbiter's u",
         "surface_vr": "a cpArbiter's surface_vr",
         "data": "a cpArbiter's data",
         "a": "a cpArbiter's a",
@@ -38,6 +44,7 @@ FIELDS = {
         "contacts": "a cpArbiter's contacts",
         "n": "a cpArbiter's n",
         "state": "a cpArbiter's state",
+        "processCollision": "a cpArbiter's processCollision",
     },
     "PointQueryInfo": {
         "shape": "a cpPointQueryInfo's shape",
@@ -52,9 +59,21 @@ FIELDS = {
         "alpha": "a cpSegmentQueryInfo's alpha",
     },
     "Body": {
+        "velocity_func": "a body's velocity and position functions",
+        "position_func": "a body's velocity and position functions",
+        "m_inv": "a body's inverse mass",
+        "i_inv": "a body's inverse moment",
+        "cog": "a body's center of gravity",
         "p": "a body's position",
+        "v": "a body's velocity",
+        "f": "a body's force",
         "w": "a body's angular velocity",
+        "t": "a body's torque",
         "transform": "a body's transform",
+        "space": "a body's space",
+        "constraints": "a body's joints",
+        "v_bias": "a body's bias velocities",
+        "w_bias": "a body's bias velocities",
     },
     "Shape": {
         "klass": "a shape's class",
@@ -64,6 +83,7 @@ FIELDS = {
         "area": "a shape's area",
         "bb": "a shape's box",
         "surfaceV": "a shape's surface velocity",
+        "sensor": "whether a shape is a sensor",
     },
     "ShapeClass": {
         "type": "a shape's kind",
@@ -102,6 +122,9 @@ FIELDS = {
         "collisionPersistence": "a space's collision persistence",
         "stamp": "a space's stamp",
         "curr_dt": "a space's time step",
+        "global_handler": "a space's global handler",
+        "static_body": "a space's static body",
+        "static_body_at": "a space's static body",
     },
 }
 # What is in several structs.

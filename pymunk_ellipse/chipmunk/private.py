@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pymunk
-from pymunk import BB, Shape, ShapeFilter, Space
+from pymunk import BB, Body, Shape, ShapeFilter, Space
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk._collision_handler import CollisionHandler
 from pymunk._util import _dead_ref
@@ -65,6 +65,16 @@ def query_box(
     lib.cpSpaceBBQuery(
         space._space, box, shape_filter, function, ffi.cast("void *", data)
     )
+
+
+def c_space(space: Space) -> Any:
+    """The cpSpace of a space."""
+    return space._space
+
+
+def c_body(body: Body) -> Any:
+    """The cpBody of a body."""
+    return body._body
 
 
 def shape_behind(cp_shape: Any) -> Shape:

@@ -76,10 +76,10 @@ def findings() -> Iterator[Finding]:
     yield from _declared_by_pymunk()
     yield from _classes()
     yield from _body()
+    yield from _space()
     yield from _circle()
     yield from _segment()
     yield from _polygon()
-    yield from _space()
     yield from _class_functions()
 
 
@@ -89,7 +89,11 @@ def _pair(vector: Any) -> tuple[float, float]:
 
 def _declared_by_pymunk() -> Iterator[Finding]:
     for ours, theirs, fields in (
-        ("Contact", "struct cpContact", ("r1", "r2", "jnAcc", "jtAcc", "hash")),
+        (
+            "Contact",
+            "struct cpContact",
+            ("r1", "r2", "nMass", "tMass", "bounce", "jnAcc", "jtAcc", "hash"),
+        ),
         (
             "Arbiter",
             "struct cpArbiter",
@@ -141,23 +145,90 @@ def _classes() -> Iterator[Finding]:
 
 
 def _body() -> Iterator[Finding]:
-    body = pymunk.Body(2.0, 3.0)
+    body = pymunk.Body(2.0, 4.0)
+    found = body_at(body._body)
+    for name in ("velocity_func", "position_func"):
+        # One after the other, and each alone.
+        before = found.velocity_func, found.position_func
+        setattr(body, name, lambda *arguments: None)
+        after = found.velocity_func, found.position_func
+        changed = [one != other for one, other in zip(before, after, strict=True)]
+        right = [name == "velocity_func", name == "position_func"]
+        yield "a body's velocity and position functions", changed, right
     body.center_of_gravity = 1.5, 2.5
     body.angle = 0.5
     body.position = 31.5, 47.25
+    body.velocity = 5.25, -6.5
+    body.force = 9.75, -10.25
     body.angular_velocity = 8.75
-    found = body_at(body._body)
+    body.torque = 11.5
     cos, sin = body.rotation_vector
     gravity = body.local_to_world(body.center_of_gravity)
+    yield "a body's inverse mass", (found.m_inv,), (0.5,)
+    yield "a body's inverse moment", (found.i_inv,), (0.25,)
     yield "a body's center of gravity", _pair(found.cog), (1.5, 2.5)
     yield "a body's position", _pair(found.p), tuple(gravity)
+    yield "a body's velocity", _pair(found.v), (5.25, -6.5)
+    yield "a body's force", _pair(found.f), (9.75, -10.25)
     yield "a body's angular velocity", (found.w,), (8.75,)
+    yield "a body's torque", (found.t,), (11.5,)
     at = found.transform
     yield (
         "a body's transform",
         (at.a, at.b, at.c, at.d, at.tx, at.ty),
         (cos, sin, -sin, cos, 31.5, 47.25),
     )
+
+
+def _space() -> Iterator[Finding]:
+    space = pymunk.Space()
+    space.iterations = 13
+    space.gravity = 1.5, -2.5
+    space.damping = 0.625
+    space.collision_slop = 0.375
+    space.collision_bias = 0.25
+    space.collision_persistence = 5
+    body = pymunk.Body(1.0, 2.0)
+    body.velocity = 3.5, -4.5
+    body.angular_velocity = 5.5
+    wall = pymunk.Circle(space.static_body, 2.0, (1.0, 0.5))
+    space.add(body, pymunk.Circle(body, 2.0, (-0.5, 1.0)), wall)
+    for _ in range(3):
+        space.step(0.0625)
+    found = space_at(space._space)
+    yield "a space's iterations", found.iterations, 13
+    yield "a space's gravity", _pair(found.gravity), (1.5, -2.5)
+    yield "a space's damping", (found.damping,), (0.625,)
+    yield "a space's collision slop", (found.collisionSlop,), (0.375,)
+    yield "a space's collision bias", (found.collisionBias,), (0.25,)
+    yield "a space's collision persistence", found.collisionPersistence, 5
+    yield "a space's stamp", found.stamp, 3
+    yield "a space's time step", (found.curr_dt,), (0.0625,)
+    # The words on the way to the last field: the global handler is for all collision types.
+    handler = found.global_handler
+    yield "a space's global handler", (handler.type_a, handler.type_b), (-1, -1)
+    place = address(space._space) + ffi.offsetof("Space", "static_body")
+    yield "a space's static body", found.static_body_at, place
+    moving = body_at(body._body)
+    usual = moving.velocity_func, moving.position_func
+    static = found.static_body
+    same = static.velocity_func == usual[0], static.position_func == usual[1]
+    yield "a static body's functions", same, (True, True)
+
+    # Two that overlap are parted by bias velocities in the step after.
+    before, angle = body.position, body.angle
+    moved = body.velocity, body.angular_velocity
+    bias = (*_pair(moving.v_bias), moving.w_bias)
+    yield "a body's space", moving.space, address(space._space)
+    yield "a body's joints", moving.constraints, 0
+    space.step(0.0625)
+    away = (body.position - before) / 0.0625 - moved[0]
+    turned = (body.angle - angle) / 0.0625 - moved[1]
+    yield "a body's bias velocities", bias, (*away, turned)
+    yield "whether a body has bias velocities", all(bias), True
+    joint = pymunk.PivotJoint(body, space.static_body, (0.0, 0.0))
+    space.add(joint)
+    yield "a body's joints", moving.constraints, address(joint._constraint)
 
 
 _TRANSFORM = Transform(0.6, 0.8, -0.8, 0.6, 31.5, 47.25)
@@ -168,6 +239,7 @@ def _shape(shape: pymunk.Shape, kind: int) -> Iterator[Finding]:
     shape.body = body
     shape.mass = 1.75
     shape.surface_velocity = 3.25, -4.75
+    shape.sensor = True
     found = shape_at(shape._shape)
     yield "a shape's body", found.on_body, address(body._body)
     yield "a shape's mass", (found.m,), (1.75,)
@@ -175,6 +247,7 @@ def _shape(shape: pymunk.Shape, kind: int) -> Iterator[Finding]:
     yield "a shape's center of gravity", _pair(found.cog), shape.center_of_gravity
     yield "a shape's area", (found.area,), (shape.area,)
     yield "a shape's surface velocity", _pair(found.surfaceV), (3.25, -4.75)
+    yield "whether a shape is a sensor", found.sensor, 1
     yield "a shape's kind", found.shape_class.type, kind
     box = shape.update(_TRANSFORM)
     bb = found.bb
@@ -243,27 +316,6 @@ def _polygon() -> Iterator[Finding]:
     found = polygon_at(many._shape)
     outside = address(found.planes) != address(found.inline_planes)
     yield "how many planes are inline in a polygon", outside, True
-
-
-def _space() -> Iterator[Finding]:
-    space = pymunk.Space()
-    space.iterations = 13
-    space.gravity = 1.5, -2.5
-    space.damping = 0.625
-    space.collision_slop = 0.375
-    space.collision_bias = 0.25
-    space.collision_persistence = 5
-    for _ in range(3):
-        space.step(0.125)
-    found = space_at(space._space)
-    yield "a space's iterations", found.iterations, 13
-    yield "a space's gravity", _pair(found.gravity), (1.5, -2.5)
-    yield "a space's damping", (found.damping,), (0.625,)
-    yield "a space's collision slop", (found.collisionSlop,), (0.375,)
-    yield "a space's collision bias", (found.collisionBias,), (0.25,)
-    yield "a space's collision persistence", found.collisionPersistence, 5
-    yield "a space's stamp", found.stamp, 3
-    yield "a space's time step", (found.curr_dt,), (0.125,)
 
 
 def _class_functions() -> Iterator[Finding]:

@@ -20,7 +20,31 @@ typedef struct {
     Vect cog, p, v, f;
     double a, w, t;
     Transform transform;
+    intptr_t userData;
+    Vect v_bias;
+    double w_bias;
+    intptr_t space, shapes, arbiters, constraints;
 } Body;
+
+typedef struct { intptr_t type_a, type_b, functions[4], userData; } CollisionHandler;
+
+/* static_body is Chipmunk's own, which pymunk never gives to anyone. */
+typedef struct {
+    int iterations;
+    Vect gravity;
+    double damping, idleSpeedThreshold, sleepTimeThreshold, collisionSlop, collisionBias;
+    unsigned int collisionPersistence;
+    intptr_t userData;
+    unsigned int stamp;
+    double curr_dt;
+    intptr_t bodies[4], shapeIDCounter, indexes[2], constraints, arbiters[4], buffers;
+    int locked;
+    intptr_t handlers;
+    CollisionHandler global_handler;
+    unsigned char skipPostStep;
+    intptr_t postStepCallbacks, static_body_at;
+    Body static_body;
+} Space;
 
 typedef struct {
     int type;
@@ -101,16 +125,6 @@ typedef struct {
     unsigned char processCollision;
 } Arbiter;
 
-typedef struct {
-    int iterations;
-    Vect gravity;
-    double damping, idleSpeedThreshold, sleepTimeThreshold, collisionSlop, collisionBias;
-    unsigned int collisionPersistence;
-    intptr_t userData;
-    unsigned int stamp;
-    double curr_dt;
-} Space;
-
 typedef struct { intptr_t shape; Vect point; double distance; Vect gradient; } PointQueryInfo;
 typedef struct { intptr_t shape; Vect point, normal; double alpha; } SegmentQueryInfo;
 
@@ -126,7 +140,10 @@ typedef struct {
 
 /* What the compiled library exports. An ellipse is a Hull, a shape any shape of Chipmunk's. Results are
    numbers in a row, as the Python functions of the same name return them. */
+void pe_resolve(void *arbiter, void *space, int exact_impacts);
+void pe_complete(void *arbiter, void *space);
 void pe_pre_solve(void *arbiter, void *space, void *data);
+void pe_pre_solve_with_impacts(void *arbiter, void *space, void *data);
 void *pe_shape_class(const void *of_polygons);
 void pe_shape_contact(void *ellipse, void *shape, double *result);
 void pe_nearest_now(void *ellipse, double x, double y, double *result);

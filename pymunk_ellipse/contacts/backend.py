@@ -23,7 +23,7 @@ from ..narrowphase.cast import Hit
 from ..narrowphase.nearest import Nearest
 from ..narrowphase.rows import contacts_of_rows, nearest_of_rows
 from .pair import ShapeContact, shape_contact
-from .resolver import pre_solve
+from .resolver import complete, resolve
 
 if TYPE_CHECKING:
     from .library import Library
@@ -37,18 +37,36 @@ class Python:
     name = "python"
 
     def __init__(self) -> None:
-        def resolve(arbiter: int, space: int, data: Any) -> None:
-            pre_solve(arbiter, space)
+        def pre_solve(arbiter: int, space: int, data: Any) -> None:
+            resolve(arbiter, space, False)
+            complete(arbiter, space)
 
-        call = ffi.callback("void(intptr_t, intptr_t, void *)", resolve)
+        def pre_solve_with_impacts(arbiter: int, space: int, data: Any) -> None:
+            resolve(arbiter, space, True)
+            complete(arbiter, space)
+
+        calls = [
+            ffi.callback("void(intptr_t, intptr_t, void *)", function)
+            for function in (pre_solve, pre_solve_with_impacts)
+        ]
         collect = ffi.callback("void(intptr_t, intptr_t)", collect_touched)
-        keep_for_ever((call, collect))
-        self.pre_solve = pre_solve_function(address(call))
+        keep_for_ever((calls, collect))
+        self.pre_solve, self.pre_solve_with_impacts = (
+            pre_solve_function(address(call)) for call in calls
+        )
         self.collect_touched = box_query_function(address(collect))
 
     def make_class(self, polygons: Any) -> int:
         """Make the class of ellipses from that of polygons; returns its address."""
         return python_class(polygons)
+
+    def resolve(self, arbiter: Any, space: Any, exact_impacts: bool) -> None:
+        """See contacts.resolver."""
+        resolve(address(arbiter), address(space), exact_impacts)
+
+    def complete(self, arbiter: Any, space: Any) -> None:
+        """See contacts.resolver."""
+        complete(address(arbiter), address(space))
 
     def shape_contact(self, ellipse: Any, shape: Any) -> ShapeContact:
         """See contacts.pair."""

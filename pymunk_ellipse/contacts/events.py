@@ -99,6 +99,16 @@ class _EventDispatcher(Dispatcher):
             super()._separate(arbiter, space, data)
 
 
+class _GlobalEventDispatcher(_EventDispatcher):
+    """The same for the last handler that Chipmunk calls: it completes the contact."""
+
+    def _pre_solve(self, arbiter: Arbiter, space: pymunk.Space, data: Any) -> None:
+        try:
+            super()._pre_solve(arbiter, space, data)
+        finally:
+            self._touches.contacts.complete(arbiter._arbiter)
+
+
 def listens(handler: CollisionHandler) -> bool:
     """Whether a handler has a callback of the user that depends on whether two ellipses touch."""
     return not (handler.begin is handler.pre_solve is handler.separate is None)
@@ -124,7 +134,7 @@ class GlobalEventHandler(ContactHandler):
 
     def make_dispatcher(self) -> Dispatcher:
         self.touches = Touches(self)
-        return _EventDispatcher(self, self.touches)
+        return _GlobalEventDispatcher(self, self.touches)
 
     def in_python(self) -> bool:
         return listens(self)

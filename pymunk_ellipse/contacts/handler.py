@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 from pymunk import Arbiter, Space
 
 from ..chipmunk.private import (
-    NULL,
     PHASES,
     CollisionHandler,
+    c_space,
     call_compiled,
     call_python,
     ffi,
@@ -105,6 +105,7 @@ class ContactHandler(ChainedHandler):
     def __init__(self, handler: Any, space: Space) -> None:
         # How many ellipses there are in the space.
         self.ellipses = 0
+        self._exact_impacts = False
         # Until the first contact of the space, which may be a copy of one at work.
         self.adopts = True
         # Contacts that came with a copy, and that arbiters point to.
@@ -124,7 +125,23 @@ class ContactHandler(ChainedHandler):
         python = self.in_python() or (self.adopts and self.ellipses > 0)
         call_python(self._handler, "pre_solve", python)
         if self.ellipses > 0 and not python:
-            call_compiled(self._handler, kernel().pre_solve)
+            chosen = kernel()
+            call_compiled(
+                self._handler,
+                chosen.pre_solve_with_impacts
+                if self.exact_impacts
+                else chosen.pre_solve,
+            )
+
+    @property
+    def exact_impacts(self) -> bool:
+        """Whether impacts are resolved at their own time."""
+        return self._exact_impacts
+
+    @exact_impacts.setter
+    def exact_impacts(self, exact: bool) -> None:
+        self._exact_impacts = exact
+        self.wire()
 
     def enter(self) -> None:
         """Resolve contacts from now on: an ellipse has entered the space."""
@@ -139,10 +156,14 @@ class ContactHandler(ChainedHandler):
             self.wire()
 
     def resolve(self, arbiter: Any) -> None:
-        """Write the exact contact into a C arbiter, if it has an ellipse."""
+        """Write the exact contact into a C arbiter, if it has an ellipse, before the first callback sees it."""
         if self.adopts:
             self.adopt(arbiter)
-        kernel().pre_solve(arbiter, self._space._space, NULL)
+        kernel().resolve(arbiter, c_space(self._space), self._exact_impacts)
+
+    def complete(self, arbiter: Any) -> None:
+        """Complete a resolved contact by what callbacks have set, after the last of them."""
+        kernel().complete(arbiter, c_space(self._space))
 
     def adopt(self, current: Any) -> None:
         """Take over the contacts of the space that this one is a copy of, when the first of them is at hand."""
@@ -152,15 +173,17 @@ class ContactHandler(ChainedHandler):
 
 
 class _ContactDispatcher(Dispatcher):
-    """Resolves the contact before the user's callback sees it."""
+    """Resolves the contact before the user's callback sees it, and completes it afterwards: it is the last that Chipmunk calls."""
 
     _handler: ContactHandler
 
     def _pre_solve(self, arbiter: Arbiter, space: Space, data: Any) -> None:
         handler = self._handler
         handler.resolve(arbiter._arbiter)
-        if handler._pre_solve is not None:
-            handler._pre_solve(arbiter, space, data)
+        try:
+            super()._pre_solve(arbiter, space, data)
+        finally:
+            handler.complete(arbiter._arbiter)
 
 
 _Handler = TypeVar("_Handler", bound=ChainedHandler)

@@ -22,6 +22,7 @@ SOURCES = (
     "chipmunk/structs.h",
     "chipmunk/shape_class.py",
     "contacts/handover.py",
+    "contacts/impacts.py",
     "contacts/pair.py",
     "contacts/resolver.py",
     "narrowphase",
@@ -83,6 +84,12 @@ class Library:
         return pre_solve_function(address(place))
 
     @cached_property
+    def pre_solve_with_impacts(self) -> Any:
+        """The same, with impacts at their own time."""
+        place = ffi.addressof(self._lib, "pe_pre_solve_with_impacts")
+        return pre_solve_function(address(place))
+
+    @cached_property
     def collect_touched(self) -> Any:
         """What Chipmunk calls for each shape near a wide ray; see chipmunk.shape_class."""
         place = ffi.addressof(self._lib, "pe_collect_touched")
@@ -91,6 +98,14 @@ class Library:
     def make_class(self, polygons: Any) -> int:
         """Make the class of ellipses from that of polygons; returns its address."""
         return address(self._lib.pe_shape_class(polygons))
+
+    def resolve(self, arbiter: Any, space: Any, exact_impacts: bool) -> None:
+        """See contacts.resolver."""
+        self._lib.pe_resolve(arbiter, space, exact_impacts)
+
+    def complete(self, arbiter: Any, space: Any) -> None:
+        """See contacts.resolver."""
+        self._lib.pe_complete(arbiter, space)
 
     def shape_contact(self, ellipse: Any, shape: Any) -> ShapeContact:
         """See contacts.pair."""

@@ -11,6 +11,7 @@ from ..chipmunk.structs import (
     behind,
     circle_at,
     ellipse_class,
+    frame_in,
     hull_at,
     polygon_at,
     segment_at,
@@ -22,6 +23,13 @@ from ..narrowphase.frame import Frame, seen_from
 
 # Distance, normal from the first to the second (x, y), and a point on each surface (x, y).
 ShapeContact = tuple[float, float, float, float, float, float, float]
+
+
+def contact_of(ellipse: Frame, shape: Any, nx: float, ny: float) -> Contact:
+    """The contact of an ellipse in the world and any shape, where that was updated last, found from the normal (nx, ny) on."""
+    if shape.klass == ellipse_class():
+        return ellipse_ellipse(ellipse, frame_in(hull_at(shape).world), nx, ny)
+    return contact_with(ellipse, shape, False, nx, ny)
 
 
 def contact_with(

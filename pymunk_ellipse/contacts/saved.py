@@ -5,19 +5,21 @@ from __future__ import annotations
 import weakref
 from typing import Any
 
-from pymunk import Shape, Space
+from pymunk import Body, Shape, Space
 
 from ..chipmunk.private import (
     NO_SPACE,
     arbiters_of,
+    c_body,
     contact_at,
     contact_state,
     new_contact,
     shape_behind,
 )
-from ..chipmunk.structs import CACHED, address, ellipse_class, shape_at
+from ..chipmunk.structs import CACHED, address, body_at, ellipse_class, shape_at
 
 Saved = tuple[Shape, Shape, dict[str, Any]]
+Bias = tuple[Body, float, float, float]
 
 
 class SavedContacts:
@@ -82,6 +84,27 @@ def adopt(saved: SavedContacts, space: Space, current: Any) -> list[Any]:
             arbiter.contacts[0].hash = contact_name(arbiter)
             arbiter.data = arbiter.contacts
     return adopted
+
+
+def bias_velocities(space: Space) -> list[Bias]:
+    """Bodies that the next step moves by what the last one's contacts have left, with those velocities (x, y) and spins."""
+    found = []
+    for body in space.bodies:
+        struct = body_at(c_body(body))
+        bias = struct.v_bias
+        numbers = bias.x, bias.y, struct.w_bias
+        if any(numbers):
+            found.append((body, *numbers))
+    return found
+
+
+def set_bias_velocities(saved: list[Bias]) -> None:
+    """Have the next step move the bodies of a copied space so as well; pymunk does not copy this."""
+    for body, x, y, spin in saved:
+        struct = body_at(c_body(body))
+        struct.v_bias.x = x
+        struct.v_bias.y = y
+        struct.w_bias = spin
 
 
 def contact_name(arbiter: Any) -> int:

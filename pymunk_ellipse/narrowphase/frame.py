@@ -45,6 +45,20 @@ def normal_at(frame: Frame, px: float, py: float) -> tuple[float, float]:
     return c * u - s * v, s * u + c * v
 
 
+def curvature_radius(frame: Frame, nx: float, ny: float) -> float:
+    """The radius of curvature of an ellipse where its normal is along the unit vector (nx, ny).
+
+    >>> curvature_radius((2.0, 1.0, 0.0, 1.0, 7.0, 9.0), 0.0, -1.0)
+    0.5
+    """
+    a, b, c, s, _x, _y = frame
+    along = a * (c * nx + s * ny)
+    across = b * (c * ny - s * nx)
+    h = sqrt(along * along + across * across)
+    area = a * b
+    return area / h * (area / h) / h
+
+
 def half_extents(frame: Frame) -> tuple[float, float]:
     """Half the width and half the height of an ellipse's bounding box.
 

@@ -29,6 +29,25 @@ def rolling_velocity(
     return 0.5 * (spin_a * day - spin_b * dby), 0.5 * (spin_b * dbx - spin_a * dax)
 
 
+def with_restitution(
+    x: float, y: float, nx: float, ny: float, elasticity: float
+) -> tuple[float, float]:
+    """The velocity (x, y) of rolling, for a contact that is elastic, along the unit normal (nx, ny).
+
+    Restitution is for what comes closer beyond rolling. Two that roll have a normal velocity s_n
+    where they touch as the step begins, and should have -s_n where they will touch by its
+    middle, so with a normal velocity u_n they should have -s_n - e (u_n - s_n), which is
+    -e u_n - (1 - e) s_n. A solver that gives -e u_n less the velocity handed to it is
+    to get s - e s_n n. The speed afterwards is at most the larger of u_n and s_n: restitution
+    makes no energy of rolling.
+
+    >>> with_restitution(2.0, 3.0, 0.0, 1.0, 0.5)
+    (2.0, 1.5)
+    """
+    along = elasticity * (x * nx + y * ny)
+    return x - along * nx, y - along * ny
+
+
 def same_contact(nx: float, ny: float, last_x: float, last_y: float) -> bool:
     """Whether a contact can have rolled from one normal, of any length, to the unit vector (nx, ny), or has jumped."""
     along = nx * last_x + ny * last_y

@@ -83,7 +83,7 @@ def test_meeting_of_an_ellipse_beside_its_centre_of_gravity():
 def test_relative_velocity_is_that_of_the_touching_points():
     for one, other in pairs():
         meeting = meeting_of(one, other)
-        _distance, nx, ny, *_points = meeting
+        _distance, nx, ny, px, py, qx, qy = meeting
         vx, vy = one.velocity_at(px, py)
         wx, wy = other.velocity_at(qx, qy)
         across = (wy - vy) * nx - (wx - vx) * ny
@@ -95,7 +95,7 @@ def test_relative_velocity_is_that_of_the_touching_points():
 def test_contact_mass_is_what_a_push_does():
     for one, other in pairs():
         meeting = meeting_of(one, other)
-        _distance, nx, ny, *_points = meeting
+        _distance, nx, ny, _px, _py, _qx, _qy = meeting
 
         def velocity(jx, jy, one=one, other=other, meeting=meeting):
             pushed = (
@@ -117,7 +117,7 @@ def test_contact_mass_is_what_a_push_does():
 def test_predicted_impulse_tends_to_the_laws_of_impact(elasticity, friction):
     for one, other in pairs():
         meeting = meeting_of(one, other)
-        _distance, nx, ny, *_points = meeting
+        _distance, nx, ny, px, py, qx, qy = meeting
         un, ut = relative_velocity(motion(one), motion(other), meeting)
         if un > -1.0:
             continue

@@ -16,7 +16,7 @@ FILLED_AT = 1.5
 
 class Hopper(Scene):
     view = -110.0, -70.0, 110.0, 370.0
-    seconds = 10.0
+    seconds = 8.5
     picture_at = 3.5
 
     def __init__(self) -> None:

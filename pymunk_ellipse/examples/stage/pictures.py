@@ -78,5 +78,6 @@ def save_animation(frames: list[Image.Image], path: Path, milliseconds: int) -> 
 
 def quantized(image: Image.Image, sample: Image.Image) -> Image.Image:
     """An image in the colours of a sample."""
-    palette = sample.quantize(COLORS)
+    # Also colours that are rare, of thin lines: the usual way goes by how many pixels there are.
+    palette = sample.quantize(COLORS, method=Image.Quantize.MAXCOVERAGE)
     return image.quantize(palette=palette, dither=Image.Dither.NONE)

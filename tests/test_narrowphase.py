@@ -535,6 +535,23 @@ def test_longest_and_shortest_semi_axes():
             assert found.distance <= 0
 
 
+@pytest.mark.parametrize("far", [1e9, 1e100, 1e200, 1e300])
+@pytest.mark.parametrize("a", [1e-44, 1.0, 1e50])
+def test_farthest_apart(a, far):
+    if far < a:
+        return
+    ellipse, end = Placed(a, a / 3, 0, 0, 0.9), far * 1.5
+    for other in (
+        Placed(2 * a, a, far, far / 3, 0.6),
+        Round(((far, far / 3),), a),
+        Round(((far, far / 3), (end, far)), a),
+        Round(((far, far / 3), (end, far), (far, end)), a),
+    ):
+        found = contact(ellipse, other)
+        assert all(isfinite(number) for number in found)
+        assert found.distance == pytest.approx(hypot(far, far / 3), rel=1e-8)
+
+
 def chained(ellipse, before=(0.0, 0.0), after=(0.0, 0.0), radius=0.0):
     """The contact with a segment from (-1, 0) to (1, 0) that has neighbours."""
     ends = (-1.0, 0.0), (1.0, 0.0)

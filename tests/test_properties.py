@@ -29,8 +29,8 @@ many = settings(
 # Roundoff of a distance, as a part of the lengths that enter it.
 ROUNDOFF = 1e-13
 
-# Twice the turn (radians) at which the fit ends.
-LAST_TURN = 2e-6
+# No normal is off by more (radians).
+NORMAL_ERROR = 1e-10
 
 ALL = pymunk.ShapeFilter()
 POINT = Placed(1e-20, 1e-20)
@@ -132,10 +132,10 @@ def extent(*ellipses):
 
 
 def radius_of_curvature(ellipse, nx, ny):
-    """The largest one where an ellipse's normal is within two last turns of n."""
+    """The largest one where an ellipse's normal is within twice that error of n."""
     a, b, _x, _y, angle = ellipse
     phi = atan2(ny, nx) - angle
-    turns = [phi + step * LAST_TURN / 4 for step in range(-8, 9)]
+    turns = [phi + step * NORMAL_ERROR / 4 for step in range(-8, 9)]
     return max((a * b) ** 2 / hypot(a * cos(t), b * sin(t)) ** 3 for t in turns)
 
 
@@ -143,9 +143,9 @@ def fit_errors(first, second, found):
     """How far the distance may be from its maximum, and the second point from its surface, where the next turn is the last one."""
     radius = radius_of_curvature(second, -found.nx, -found.ny)
     between = radius_of_curvature(first, found.nx, found.ny) + radius
-    aside = LAST_TURN * (between + abs(found.distance))
+    aside = NORMAL_ERROR * (between + abs(found.distance))
     sharpest = min(second[:2]) ** 2 / max(second[:2])
-    return aside * LAST_TURN, min(aside, aside * aside / sharpest)
+    return aside * NORMAL_ERROR, min(aside, aside * aside / sharpest)
 
 
 def check_sign(distance, square, tolerance):

@@ -130,15 +130,19 @@ def fitted_circles(pair: Pair, mx: float, my: float) -> Circles:
 def first_guess(pair: Pair) -> tuple[float, float]:
     """A normal to start from, of any length: at d, that of the ellipse with the squared support function h1^2 + h2^2."""
     a1, b1, a2, b2, c, s, dx, dy = pair
+    far = max(abs(dx), abs(dy))
+    if far == 0.0:
+        return 0.0, 1.0
+    dx /= far
+    dy /= far
     xx = a1 * a1 + a2 * a2 * c * c + b2 * b2 * s * s
     yy = b1 * b1 + a2 * a2 * s * s + b2 * b2 * c * c
     xy = (a2 * a2 - b2 * b2) * c * s
     nx = yy * dx - xy * dy
     ny = xx * dy - xy * dx
-    size = abs(nx) + abs(ny)
-    if not size > TINY:
+    if nx == 0.0 and ny == 0.0:
         return 0.0, 1.0
-    return nx / size, ny / size
+    return nx, ny
 
 
 def smallest_axis(pair: Pair) -> float:

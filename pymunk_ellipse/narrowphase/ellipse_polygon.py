@@ -56,6 +56,9 @@ def polygon_contact(
     face = 0
     nx = 0.0
     ny = 0.0
+    along = 0.0
+    across = 0.0
+    support = 0.0
     for i in range(count):
         outward_x = planes[4 * i + 2]
         outward_y = planes[4 * i + 3]
@@ -68,13 +71,21 @@ def polygon_contact(
         # A face between two equal vertices has no normal.
         if f > best and h > 0.0:
             best, face, nx, ny = f, i, -outward_x, -outward_y
-    if nx == 0.0 and ny == 0.0:
+            along, across, support = u, v, h
+    if support == 0.0:
         corner = (radius, radius, 1.0, 0.0, planes[0], planes[1])
         return ellipse_ellipse(ellipse, corner, 0.0, 0.0), 0
 
     feature = FACE
-    contact, past_end = along_normal(ellipse, vertex(planes, face), radius, nx, ny)
-    start = (face - 1) % count
+    along *= -a / support
+    across *= -b / support
+    px = c * along - s * across
+    py = s * along + c * across
+    contact = (best, nx, ny, px, py)
+    dx = planes[4 * face] - x
+    dy = planes[4 * face + 1] - y
+    past_end = (dy - py) * nx - (dx - px) * ny
+    start = face - 1 if face > 0 else count - 1
     ex = planes[4 * face] - planes[4 * start]
     ey = planes[4 * face + 1] - planes[4 * start + 1]
     past_start = past_end + ex * ny - ey * nx

@@ -131,7 +131,10 @@ assert size < 1_000_000
 def selfcheck(session: nox.Session) -> None:
     """Run the library of every platform on the same numbers, in emulators where they are, and compare the bits."""
     session.install("ziglang>=0.16", "pymunk>=7,<8")
-    session.run("python", "-m", "kernel.selfcheck", str(built(session, ".whl")))
+    session.run(
+        *("python", "-m", "kernel.selfcheck", str(built(session, ".whl"))),
+        *session.posargs,
+    )
 
 
 @nox.session(requires=["build"])

@@ -1,11 +1,13 @@
-"""The tests on every supported pymunk, and of the package as it is released; each in a new environment.
+"""Builds the package as it is released, and tests that on every supported pymunk and Python; each in a new environment.
 
-`nox` runs all of it and ends with a table; `nox -l` lists the sessions.
+`nox` runs all of it and ends with a table; `nox -l` lists the sessions. Nothing but dist/ changes in
+the checkout: what is tested is the wheel, with the tests of the sdist.
 """
 
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 
 import nox
@@ -14,40 +16,139 @@ nox.options.default_venv_backend = "venv"
 nox.options.reuse_venv = "no"
 
 PYMUNKS = ("7.0.1", "7.1.0", "7.2.0", "7.3.1")
+PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 ROOT = Path(__file__).parent
+DIST = ROOT / "dist"
 
 
 @nox.session
-@nox.parametrize("backend", ["python", "compiled"], ids=["python", "compiled"])
-@nox.parametrize("pymunk", PYMUNKS, ids=PYMUNKS)
-def tests(session: nox.Session, pymunk: str, backend: str) -> None:
-    """Run the tests on one pymunk, with the library and where it is not there."""
-    session.install("-e", ".[test]", f"pymunk=={pymunk}")
-    if backend == "python":
-        for library in ROOT.glob("pymunk_ellipse/_kernel-*"):
-            library.unlink()
-    # The demos need matplotlib, and show nothing that depends on pymunk's version.
+def build(session: nox.Session) -> None:
+    """Build the sdist, and from it one wheel for all platforms, into dist/, unless those there are newer than all sources."""
+    listed = session.run(
+        *("git", "ls-files", "--cached", "--others", "--exclude-standard"),
+        silent=True,
+        external=True,
+    )
+    changed = max(
+        file.stat().st_mtime
+        for file in (ROOT / name for name in str(listed).splitlines())
+        if file.exists()
+    )
+    made = [*DIST.glob("*.whl"), *DIST.glob("*.tar.gz")]
+    if len(made) == 2 and all(file.stat().st_mtime > changed for file in made):
+        session.skip("dist/ is newer than the sources")
+    session.install("build")
+    shutil.rmtree(DIST, ignore_errors=True)
     session.run(
-        *("python", "-m", "pytest", "-q", "--ignore=tests/test_demos.py"),
-        *session.posargs,
+        *("python", "-m", "build", "--outdir", str(DIST), str(ROOT)),
+        env={
+            "PYMUNK_ELLIPSE_ALL_PLATFORMS": "1",
+            "PYMUNK_ELLIPSE_REQUIRE_LIBRARY": "1",
+        },
     )
 
 
-@nox.session
-def release(session: nox.Session) -> None:
-    """Build sdist and wheel, and test the wheel alone with the tests of the sdist."""
-    session.install("build")
-    place = Path(session.create_tmp())
-    shutil.rmtree(place, ignore_errors=True)
-    session.run("python", "-m", "build", "--outdir", str(place), str(ROOT))
-    (wheel,) = place.glob("*.whl")
-    (sdist,) = place.glob("*.tar.gz")
-    session.run("python", "-m", "pip", "uninstall", "-yq", "build", silent=True)
-    session.install(f"{wheel}[test,demos]")
+def built(session: nox.Session, kind: str) -> Path:
+    """The one file of a kind in dist/."""
+    found = list(DIST.glob(f"*{kind}"))
+    if len(found) != 1:
+        session.error(
+            f"nox -s build makes what is tested: {len(found)} {kind} in dist/"
+        )
+    return found[0]
 
+
+def run_tests(session: nox.Session, extras: str, *arguments: str) -> None:
+    """Run the sdist's tests, and the doctests, on the wheel, which is installed already."""
+    session.install(f"{built(session, '.whl')}[{extras}]")
+    sdist = built(session, ".tar.gz")
+    place = Path(session.create_tmp())
     shutil.unpack_archive(sdist, place)
     unpacked = place / sdist.name.removesuffix(".tar.gz")
     # So that it is the wheel that is tested.
     shutil.rmtree(unpacked / "pymunk_ellipse")
     session.chdir(unpacked)
-    session.run("python", "-m", "pytest", "-q", "tests", *session.posargs)
+    session.run(
+        *("python", "-m", "pytest", "-q", "tests", "--pyargs", "pymunk_ellipse"),
+        *(*arguments, *session.posargs),
+    )
+
+
+# The demos need matplotlib, and show nothing that depends on pymunk's version.
+WITHOUT_DEMOS = "--ignore=tests/test_demos.py"
+
+
+@nox.session(requires=["build"])
+@nox.parametrize("backend", ["python", "compiled"], ids=["python", "compiled"])
+@nox.parametrize("pymunk", PYMUNKS, ids=PYMUNKS)
+def tests(session: nox.Session, pymunk: str, backend: str) -> None:
+    """Run the tests on one pymunk, with the library and where it is not there."""
+    session.install(f"pymunk=={pymunk}", str(built(session, ".whl")))
+    if backend == "python":
+        # Out of this session's environment.
+        session.run("python", "-c", REMOVE_LIBRARY)
+    run_tests(session, "test", WITHOUT_DEMOS)
+
+
+REMOVE_LIBRARY = """
+from pathlib import Path
+import pymunk_ellipse
+for library in Path(pymunk_ellipse.__file__).parent.glob("_kernel-*"):
+    library.unlink()
+"""
+
+
+@nox.session(python=PYTHONS, requires=["build"])
+def pythons(session: nox.Session) -> None:
+    """Run the tests on one Python."""
+    run_tests(session, "test", WITHOUT_DEMOS)
+
+
+@nox.session(requires=["build"])
+def everything(session: nox.Session) -> None:
+    """Run all tests, those of the demos and of sweeps on a cluster as well."""
+    run_tests(session, "test,demos,cluster")
+
+
+@nox.session(requires=["build"])
+def alone(session: nox.Session) -> None:
+    """Use the wheel with nothing beside it but what it requires, and say how large it is."""
+    session.install(str(built(session, ".whl")))
+    session.run("python", "-I", str(ROOT / "tests" / "small_program.py"))
+    session.run("python", "-c", SIZE)
+
+
+SIZE = """
+from importlib.metadata import distribution
+kept = distribution("pymunk-ellipse")
+size = sum(file.locate().stat().st_size for file in kept.files if file.locate().exists())
+print(f"{size} bytes are installed")
+assert size < 1_000_000
+"""
+
+
+@nox.session(requires=["build"])
+def selfcheck(session: nox.Session) -> None:
+    """Run the library of every platform on the same numbers, in emulators where they are, and compare the bits."""
+    session.install("ziglang>=0.16", "pymunk>=7,<8")
+    session.run(
+        *("python", "-m", "kernel.selfcheck", str(built(session, ".whl"))),
+        *session.posargs,
+    )
+
+
+@nox.session(requires=["build"])
+@nox.parametrize("kind", ["onedir", "onefile"], ids=["folder", "file"])
+def frozen(session: nox.Session, kind: str) -> None:
+    """Freeze a small program with PyInstaller as one folder or one file, and run it."""
+    session.install(str(built(session, ".whl")), "pyinstaller")
+    place = session.create_tmp()
+    session.chdir(place)
+    program = ROOT / "tests" / "small_program.py"
+    session.run(
+        *("pyinstaller", "--noconfirm", "--log-level=WARN", f"--{kind}", str(program))
+    )
+    made = Path(place, "dist", "small_program")
+    if kind == "onedir":
+        made /= "small_program"
+    session.run(str(made) + (".exe" if sys.platform == "win32" else ""), external=True)

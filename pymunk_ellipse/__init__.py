@@ -7,6 +7,8 @@ from .mass import area_for_ellipse, moment_for_ellipse
 from .published_fit import circle_fit
 from .space import Space
 
+__version__ = "0.2.0"
+
 __all__ = [
     "Ellipse",
     "EllipseContacts",

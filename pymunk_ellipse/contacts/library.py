@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 from atexit import register
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from functools import cached_property
 from importlib.resources import as_file, files
 from typing import Any
@@ -35,7 +35,13 @@ _PACKAGE = __package__.rpartition(".")[0]
 
 # Keeps files that are unpacked from an archive.
 _unpacked = ExitStack()
-register(_unpacked.close)
+
+
+@register
+def _remove_unpacked() -> None:
+    # Windows keeps a file that is loaded as a library.
+    with suppress(PermissionError):
+        _unpacked.close()
 
 
 def digest(package: Any) -> str | None:

@@ -322,6 +322,10 @@ KEPT = {
         )
     },
     "in sys": "sys.things = things",
+    "longer than the class's module": (
+        "sys.things = things; vars(pymunk_ellipse.chipmunk.shape_class).clear(); "
+        "gc.collect()"
+    ),
     "in a cycle": "things['cycle'] = things; gc.disable()",
     "in atexit": "atexit.register(lambda things: things['twin'].step(0.01), things)",
     "in the package": "pymunk_ellipse.things = things",
@@ -333,6 +337,8 @@ KEPT = {
 @pytest.mark.parametrize("kept", KEPT)
 def test_freed_at_the_interpreters_exit(kept, backend):
     code = EXIT.replace("{keep}", KEPT[kept])
-    printed, reported = run_code(code, PYMUNK_ELLIPSE_BACKEND=backend)
+    # What is freed is overwritten.
+    overwritten = {"PYTHONMALLOC": "debug", "MALLOC_PERTURB_": "165"}
+    printed, reported = run_code(code, PYMUNK_ELLIPSE_BACKEND=backend, **overwritten)
     assert printed.split() == [backend]
     assert reported == ""

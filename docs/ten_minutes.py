@@ -4,7 +4,7 @@ from math import hypot
 
 import pygame
 import pymunk
-from pymunk import Transform
+from pymunk import Transform, Vec2d
 
 from pymunk_ellipse import Ellipse, Space
 
@@ -62,7 +62,7 @@ class Game:
         """Whether there is ground right below the egg."""
         cosine, sine = self.egg.rotation_vector
         height = hypot(self.player.a * sine, self.player.b * cosine)
-        below = self.egg.position + (0, height + 4)
+        below = self.egg.position + Vec2d(0, height + 4)
         ground = self.space.segment_query_first(
             self.egg.position, below, 0, self.player.filter
         )

@@ -72,6 +72,7 @@ def enter(namespace: dict[str, Any]) -> None:
     folder = page.enter_context(TemporaryDirectory(ignore_cleanup_errors=True))
     page.enter_context(chdir(folder))
     namespace.update(
+        __name__="__main__",
         docs=Path(__file__).parent / "docs",
         missing=missing,
         no_screen=no_screen,

@@ -4,6 +4,8 @@ import sys
 from importlib import metadata
 from pathlib import Path
 
+from sphinx.application import Sphinx
+
 sys.path.insert(0, str(Path(__file__).parent / "extensions"))
 
 project = "pymunk_ellipse"
@@ -25,6 +27,10 @@ autoclass_content = "both"
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_type_aliases = {"ArrayLike": "numpy.typing.ArrayLike"}
+# A name that leads nowhere is an error; those of Python and numpy are not looked up.
+nitpicky = True
+nitpick_ignore_regex = [("py:.*", r"(collections|numpy)\..*")]
 
 # Read from the file, so that the build needs no network: what pymunk 7.3's own documentation lists.
 intersphinx_mapping = {"pymunk": ("https://www.pymunk.org/en/latest/", "pymunk.inv")}
@@ -33,6 +39,17 @@ html_theme = "furo"
 html_title = f"pymunk_ellipse {release}"
 html_static_path = ["static"]
 html_css_files = ["pages.css"]
-# Names in a console, and what it answers, are not copied.
 copybutton_prompt_text = "$ "
-copybutton_only_copy_prompt_lines = False
+
+
+def public_bases(
+    app: Sphinx, name: str, documented: type, options: object, bases: list[type]
+) -> None:
+    """Name the bases that users know in place of those that only the package knows."""
+    private = [base for base in bases if base.__module__.startswith("pymunk_ellipse")]
+    for base in private:
+        bases[bases.index(base) : bases.index(base) + 1] = base.__bases__
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("autodoc-process-bases", public_bases)

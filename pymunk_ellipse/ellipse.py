@@ -155,7 +155,7 @@ class Ellipse(pymunk.Poly):
 
     @property
     def density(self) -> float:
-        """Mass per area; setting it sets :py:attr:`mass`."""
+        """Mass per area; setting it sets the mass."""
         return self.mass / self.area
 
     @density.setter

@@ -101,3 +101,6 @@ def collector(page: Any, patterns: list[str]) -> Sybil:
 pytest_collect_file = (
     collector(markdown, ["README.md"]) + collector(rest, ["docs/*.rst", "docs/*/*.rst"])
 ).pytest()
+
+# They are programs, and have no doctests.
+collect_ignore_glob = ["docs/*.py", "docs/*/*.py"]

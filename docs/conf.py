@@ -36,6 +36,7 @@ nitpick_ignore_regex = [("py:.*", r"(collections|numpy)\..*")]
 intersphinx_mapping = {"pymunk": ("https://www.pymunk.org/en/latest/", "pymunk.inv")}
 
 html_theme = "furo"
+html_show_copyright = False
 html_title = f"pymunk_ellipse {release}"
 html_static_path = ["static"]
 html_css_files = ["pages.css"]

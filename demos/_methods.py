@@ -161,7 +161,9 @@ def common_normal(
         nx, ny = first_guess(numbers)
     depth = 0.0
     for _ in range(count):
-        f, slope, between, nx, ny, _px, _py, _radius = fitted_circles(numbers, nx, ny)
+        f, slope, between, _change, nx, ny, _px, _py, _radius1, _change1 = (
+            fitted_circles(numbers, nx, ny)
+        )
         distance = sqrt(between * between + slope * slope)
         depth = between - f - distance
         nx, ny = (

@@ -25,12 +25,15 @@ html_math_renderer = "mathml"
 
 autoclass_content = "both"
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
+autodoc_typehints = "signature"
+python_maximum_signature_line_length = 88
 autodoc_default_options = {"members": True, "show-inheritance": True}
 autodoc_type_aliases = {"ArrayLike": "numpy.typing.ArrayLike"}
 # A name that leads nowhere is an error; those of Python and numpy are not looked up.
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", r"(collections|numpy)\..*")]
+# Fields of named tuples are not looked up where they come from.
+nitpick_ignore = [("py:class", "Vec2d")]
 
 # Read from the file, so that the build needs no network: what pymunk 7.3's own documentation lists.
 intersphinx_mapping = {"pymunk": ("https://www.pymunk.org/en/latest/", "pymunk.inv")}

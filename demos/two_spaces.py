@@ -13,8 +13,11 @@ from pymunk_ellipse.examples.stage.canvas import OUTLINE, SMOOTHING, font
 
 WIDTH, HEIGHT = 400, 260
 SPACES = {
-    "pymunk.Space": (pymunk.Space, "exact contacts; drawn and queried by its hull"),
-    "pymunk_ellipse.Space": (pymunk_ellipse.Space, "everything exact"),
+    "pymunk.Space": (pymunk.Space, "exact contacts; drawn as its hull"),
+    "pymunk_ellipse.Space": (
+        pymunk_ellipse.Space,
+        "exact contacts, callbacks and drawing",
+    ),
 }
 
 

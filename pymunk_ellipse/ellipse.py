@@ -47,11 +47,13 @@ class Ellipse(pymunk.Poly):
     It is used like pymunk's own shapes. Contacts with ellipses, circles, segments and convex
     polygons are exact from the moment it is added to any :py:class:`pymunk.Space`.
 
-    pymunk sees a polygon with rounded corners that contains the ellipse:
-    :py:meth:`get_vertices`, :py:attr:`radius` and what a plain :py:class:`pymunk.Space` finds
-    in its queries are those of this hull. Mass, moment of inertia, area, bounding box and the
-    shape's own queries are those of the ellipse, and in a :py:class:`pymunk_ellipse.Space` so
-    are all.
+    pymunk sees a polygon with rounded corners that contains the ellipse: :py:meth:`get_vertices`
+    and :py:attr:`radius` are those of this hull. Mass, moment of inertia, area, bounding box and
+    queries are those of the ellipse, and in a :py:class:`pymunk_ellipse.Space` so is all else.
+    In a plain :py:class:`pymunk.Space`, drawing, sensors, ``shape_query`` and the callbacks
+    ``begin`` and ``separate`` go by the hull. There ``pre_solve`` for collision types is called
+    before the exact contact is known, and what it writes into normal and points is lost; that
+    for all collisions, ``on_collision(None, None, ...)``, and ``post_solve`` are called after.
 
     The distance to a shape and the normal are found by fitting circles to the ellipses, after
     N. Hori, "Collision of Ellipses", at a common normal.
@@ -155,7 +157,7 @@ class Ellipse(pymunk.Poly):
 
     @property
     def density(self) -> float:
-        """Mass per area; setting it sets :py:attr:`mass`."""
+        """Mass per area; setting it sets the mass."""
         return self.mass / self.area
 
     @density.setter

@@ -12,6 +12,14 @@ from pymunk import Vec2d
 
 from . import _checks
 
+__all__ = [
+    "EllipseParameters",
+    "ellipse_from_bb",
+    "ellipse_from_mask",
+    "ellipse_from_outline",
+    "ellipse_from_points",
+]
+
 
 class EllipseParameters(NamedTuple):
     """What an Ellipse is made of, in the order of its arguments, as in ``Ellipse(body, *parameters)``."""

@@ -37,7 +37,7 @@ class Space(EventSpace):
     overlooks none. It is used like pymunk's own, and all that is without ellipses is pymunk's own.
 
     As in pymunk, queries of the space see shapes where the last step, or the last
-    :py:meth:`reindex_shapes_for_body`, left them.
+    :py:meth:`pymunk.Space.reindex_shapes_for_body`, left them.
 
     While there are ellipses in the space, the queries raise TypeError for arguments that are
     not numbers, and ValueError for those that are not finite (a bounding box and a maximal

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import random
-import re
 from math import cos, hypot, inf, nan, pi, sin
-from pathlib import Path
 
 import numpy as np
 import pymunk
@@ -183,16 +181,3 @@ def test_refuses_what_is_no_mask(value, error, message):
 def test_refuses_what_is_no_box(value, error):
     with pytest.raises(error, match=r"^bb"):
         ellipse_from_bb(value)
-
-
-def test_code_of_the_page_on_moving_over_runs():
-    page = Path(__file__).parent.parent / "docs" / "moving_over.rst"
-    blocks = re.findall(
-        r"^.. code-block:: python\n\n((?:   .*\n|\n)+)", page.read_text("utf-8"), re.M
-    )
-    names: dict[str, object] = {}
-    for block in blocks:
-        exec(re.sub(r"^   ", "", block, flags=re.M), names)
-    assert isinstance(names["egg"], Ellipse)
-    assert isinstance(names["stone"], Ellipse)
-    assert names["sprite"].offset == (2.0, 1.5)

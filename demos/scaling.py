@@ -1,4 +1,4 @@
-"""How the time per step grows with the number of bodies, up to 20,000: circles, 16-gons and ellipses."""
+"""How the time per step grows with the number of bodies, up to 5000 (--full: 20,000): circles, 16-gons and ellipses."""
 
 from __future__ import annotations
 

@@ -106,8 +106,8 @@ def pythons(session: nox.Session) -> None:
 
 @nox.session(requires=["build"])
 def everything(session: nox.Session) -> None:
-    """Run all tests, those of the demos and of sweeps on a cluster as well."""
-    run_tests(session, "test,demos,cluster")
+    """Run all tests: also those of the demos, of sweeps on a cluster and of the code in the documentation."""
+    run_tests(session, "test,demos,cluster", "docs", "README.md")
 
 
 @nox.session(requires=["build"])

@@ -89,7 +89,12 @@ static Body random_body(Vect around, double reach) {
     Vect along = direction(), off = point(reach), gravity = point(1);
     body.transform = (Transform){along.x, along.y, -along.y, along.x, around.x + off.x, around.y + off.y};
     body.p = (Vect){body.transform.tx + gravity.x, body.transform.ty + gravity.y};
+    body.v = point(50);
     body.w = uniform(-3, 3);
+    body.m = uniform(0.5, 2);
+    body.m_inv = 1 / body.m;
+    body.i = uniform(10, 200);
+    body.i_inv = 1 / body.i;
     return body;
 }
 
@@ -189,18 +194,39 @@ RESULTS(point_query);
 RESULTS(segment_query);
 RESULTS(nearest_now);
 RESULTS(cast_now);
+RESULTS(collect_touched);
 RESULTS(shape_contact);
 RESULTS(pre_solve);
+RESULTS(pre_solve_with_impacts);
 RESULTS(contacts_of_rows);
 RESULTS(nearest_of_rows);
 
 static Results *all_results[] = {
     &cache_data_results, &point_query_results, &segment_query_results, &nearest_now_results,
-    &cast_now_results, &shape_contact_results, &pre_solve_results, &contacts_of_rows_results,
-    &nearest_of_rows_results,
+    &cast_now_results, &collect_touched_results, &shape_contact_results, &pre_solve_results,
+    &pre_solve_with_impacts_results, &contacts_of_rows_results, &nearest_of_rows_results,
 };
 
-static void check_queries(AnyShape *any, __typeof__(pe_nearest_now) *nearest_now, __typeof__(pe_cast_now) *cast_now) {
+/* The entries of the library. */
+static __typeof__(pe_digest) *digest;
+static __typeof__(pe_shape_class) *shape_class;
+static __typeof__(pe_pre_solve) *pre_solve;
+static __typeof__(pe_pre_solve_with_impacts) *pre_solve_with_impacts;
+static __typeof__(pe_shape_contact) *shape_contact;
+static __typeof__(pe_nearest_now) *nearest_now;
+static __typeof__(pe_cast_now) *cast_now;
+static __typeof__(pe_collect_touched) *collect_touched;
+static __typeof__(pe_contacts_of_rows) *contacts_of_rows;
+static __typeof__(pe_nearest_of_rows) *nearest_of_rows;
+
+static int has_entries(Library library) {
+#define ENTRY(name) ((name = (__typeof__(pe_##name) *)(intptr_t)symbol(library, "pe_" #name)) != 0)
+    return ENTRY(digest) && ENTRY(shape_class) && ENTRY(pre_solve) && ENTRY(pre_solve_with_impacts) &&
+           ENTRY(shape_contact) && ENTRY(nearest_now) && ENTRY(cast_now) && ENTRY(collect_touched) &&
+           ENTRY(contacts_of_rows) && ENTRY(nearest_of_rows);
+}
+
+static void check_queries(AnyShape *any) {
     Transform *at = &any->shape.body->transform;
     Vect start = point(15), end = point(60);
     start = (Vect){start.x + at->tx, start.y + at->ty};
@@ -224,13 +250,27 @@ static void check_queries(AnyShape *any, __typeof__(pe_nearest_now) *nearest_now
     cast_now(any, start.x, start.y, end.x, end.y, radius, numbers);
     add(&cast_now_results, numbers, 5);
     cast_now_results.hits += numbers[0] <= 1;
+
+    intptr_t touched;
+    WideRay ray = {start, end, radius, 0, &touched, numbers};
+    memset(numbers, 0, sizeof numbers);
+    collect_touched(any, &ray);
+    add(&collect_touched_results, numbers, 5);
+    collect_touched_results.hits += ray.count;
 }
 
-static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies, __typeof__(pe_pre_solve) *pre_solve) {
+static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies) {
+    int with_impacts = one_of(2), swapped = one_of(2);
+    Results *results = with_impacts ? &pre_solve_with_impacts_results : &pre_solve_results;
     Contact contacts[3];
     Arbiter arbiter = {0};
     Space space = {0};
-    int swapped = one_of(2);
+    space.iterations = 10;
+    space.gravity = point(100);
+    space.collisionSlop = 0.1;
+    space.curr_dt = 1.0 / 64;
+    arbiter.e = one_of(2) ? 0 : uniform(0, 1);
+    arbiter.u = uniform(0, 1);
     arbiter.shape_a = &any[swapped].shape;
     arbiter.shape_b = &any[!swapped].shape;
     arbiter.body_a = &bodies[swapped];
@@ -238,32 +278,35 @@ static void check_arbiter(AnyShape *any, const int *kinds, Body *bodies, __typeo
     memset(contacts, 0, sizeof contacts);
     /* The first contact has nothing before it; those after it start from the last one, with its impulses. */
     for (int step = 0; step < 3; step++) {
-        arbiter.contact = &contacts[step];
+        Contact *contact = arbiter.contact = &contacts[step];
+        space.stamp = step + 1;
         arbiter.n = direction();
         arbiter.count = 2;
         arbiter.state = step ? 1 : 0;
         arbiter.surface_vr = point(1);
-        space.stamp = step + 1;
-        pre_solve(&arbiter, &space, 0);
-        Contact *contact = &contacts[step];
+        (with_impacts ? pre_solve_with_impacts : pre_solve)(&arbiter, &space, 0);
         double numbers[] = {
-            arbiter.count, arbiter.state, arbiter.n.x, arbiter.n.y, contact->r1.x, contact->r1.y, contact->r2.x,
-            contact->r2.y, contact->jnAcc, contact->jtAcc, arbiter.surface_vr.x, arbiter.surface_vr.y,
+            arbiter.count, arbiter.state, arbiter.e, arbiter.n.x, arbiter.n.y, contact->r1.x, contact->r1.y,
+            contact->r2.x, contact->r2.y, contact->jnAcc, contact->jtAcc, contact->bounce, arbiter.surface_vr.x,
+            arbiter.surface_vr.y,
         };
-        add(&pre_solve_results, numbers, sizeof numbers / sizeof *numbers);
-        pre_solve_results.hits += arbiter.data != 0;
+        add(results, numbers, sizeof numbers / sizeof *numbers);
+        results->hits += arbiter.data != 0;
         contact->jnAcc = uniform(0, 5);
         contact->jtAcc = uniform(-1, 1);
         for (int i = 0; i < 2; i++) {
-            Transform *at = &bodies[i].transform;
-            Vect turn = unit(uniform(-0.02, 0.02)), was = {at->a, at->b}, step_to = point(0.05);
+            Body *body = &bodies[i];
+            Transform *at = &body->transform;
+            double moves[] = {body->p.x, body->p.y, body->v.x, body->v.y, body->w, body->v_bias.x, body->v_bias.y, body->w_bias};
+            add(results, moves, sizeof moves / sizeof *moves);
+            Vect turn = unit(uniform(-0.02, 0.02)), was = {at->a, at->b}, way = point(0.05);
             at->a = at->d = turn.x * was.x - turn.y * was.y;
             at->b = turn.y * was.x + turn.x * was.y;
             at->c = -at->b;
-            at->tx += step_to.x;
-            at->ty += step_to.y;
-            bodies[i].p.x += step_to.x;
-            bodies[i].p.y += step_to.y;
+            at->tx += way.x;
+            at->ty += way.y;
+            body->p.x += way.x;
+            body->p.y += way.y;
             update(&any[i], kinds[i]);
         }
     }
@@ -275,7 +318,7 @@ static void random_row(double *row, Vect center) {
     memcpy(row, numbers, sizeof numbers);
 }
 
-static void check_rows(__typeof__(pe_contacts_of_rows) *contacts, __typeof__(pe_nearest_of_rows) *nearest) {
+static void check_rows(void) {
     enum { COUNT = 16 };
     double first[5 * COUNT], second[5 * COUNT], points[2 * COUNT], found[7 * COUNT];
     for (int i = 0; i < COUNT; i++) {
@@ -284,10 +327,10 @@ static void check_rows(__typeof__(pe_contacts_of_rows) *contacts, __typeof__(pe_
         random_row(second + 5 * i, off);
         memcpy(points + 2 * i, &off, sizeof off);
     }
-    contacts(COUNT, first, 5, second, 5, found);
+    contacts_of_rows(COUNT, first, 5, second, 5, found);
     add(&contacts_of_rows_results, found, 7 * COUNT);
     for (int i = 0; i < COUNT; i++) contacts_of_rows_results.hits += found[7 * i] <= 0;
-    nearest(COUNT, first, 5, points, 2, found);
+    nearest_of_rows(COUNT, first, 5, points, 2, found);
     add(&nearest_of_rows_results, found, 5 * COUNT);
     for (int i = 0; i < COUNT; i++) nearest_of_rows_results.hits += found[5 * i] <= 0;
 }
@@ -298,17 +341,7 @@ int main(int count, char **arguments) {
         fprintf(stderr, "selfcheck: cannot load %s\n", count == 2 ? arguments[1] : "anything: one argument is needed");
         return 2;
     }
-#define ENTRY(name) __typeof__(pe_##name) *name = (__typeof__(pe_##name) *)(intptr_t)symbol(library, "pe_" #name)
-    ENTRY(digest);
-    ENTRY(shape_class);
-    ENTRY(pre_solve);
-    ENTRY(shape_contact);
-    ENTRY(nearest_now);
-    ENTRY(cast_now);
-    ENTRY(contacts_of_rows);
-    ENTRY(nearest_of_rows);
-    if (!digest || !shape_class || !pre_solve || !shape_contact || !nearest_now || !cast_now || !contacts_of_rows ||
-        !nearest_of_rows) {
+    if (!has_entries(library)) {
         fprintf(stderr, "selfcheck: %s lacks an entry\n", arguments[1]);
         return 2;
     }
@@ -325,15 +358,15 @@ int main(int count, char **arguments) {
         }
         add(&cache_data_results, &any[0].shape.bb.left, 4);
         add(&cache_data_results, any[0].hull.world, 6);
-        check_queries(&any[0], nearest_now, cast_now);
+        check_queries(&any[0]);
 
         double numbers[7];
         shape_contact(&any[0], &any[1], numbers);
         add(&shape_contact_results, numbers, 7);
         shape_contact_results.hits += numbers[0] <= 0;
-        check_arbiter(any, kinds, bodies, pre_solve);
+        check_arbiter(any, kinds, bodies);
     }
-    for (int i = 0; i < PAIRS / 16; i++) check_rows(contacts_of_rows, nearest_of_rows);
+    for (int i = 0; i < PAIRS / 16; i++) check_rows();
 
     int failed = 0;
     printf("sources %s\n", digest());

@@ -79,7 +79,7 @@ def run(target: Target, library: Path) -> str:
         subprocess.run(
             [
                 *(compiler or zig_compiler(target)),
-                *("-std=gnu11", "-O1", "-ffp-contract=off"),
+                *("-std=gnu11", "-O2", "-s", "-ffp-contract=off"),
                 *(("-dynamic",) if "musl" in target.zig and not compiler else ()),
                 f"-I{PACKAGE / 'chipmunk'}",
                 *("-o", str(program)),

@@ -172,6 +172,11 @@ def choose() -> Kernel:
     raise ImportError(f"{VARIABLE} is compiled, but {problem}")
 
 
+# PyPy wants a name's type before the first function that says it is global.
+_kernel: Kernel | None = None
+_classes: dict[str, int] = {}
+
+
 def kernel() -> Kernel:
     """The kernel of this process, chosen when the first ellipse is made."""
     global _kernel
@@ -179,10 +184,6 @@ def kernel() -> Kernel:
         use(choose())
     assert _kernel is not None
     return _kernel
-
-
-_kernel: Kernel | None = None
-_classes: dict[str, int] = {}
 
 
 def use(chosen: Kernel) -> None:

@@ -67,6 +67,8 @@ def enter(namespace: dict[str, Any]) -> None:
         "SDL_VIDEODRIVER": "dummy",
         "SDL_AUDIODRIVER": "dummy",
         "MPLBACKEND": "agg",
+        # No greeting among what pages print.
+        "PYGAME_HIDE_SUPPORT_PROMPT": "1",
     }
     page.enter_context(patch.dict(os.environ, variables))
     folder = page.enter_context(TemporaryDirectory(ignore_cleanup_errors=True))

@@ -258,7 +258,7 @@ def test_what_is_missing_is_named_with_its_extra(tmp_path, missing, command):
     )
     assert finished.returncode == 1
     assert missing in finished.stderr
-    assert "pymunk-ellipse[demos]" in finished.stderr
+    assert "pymunk-ellipse[examples]" in finished.stderr
     assert "Traceback" not in finished.stderr
 
 

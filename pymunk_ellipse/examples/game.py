@@ -28,7 +28,7 @@ try:
     import pygame
 except ModuleNotFoundError:
     if __name__ == "__main__":
-        sys.exit('The game needs pygame: pip install "pymunk-ellipse[demos]"')
+        sys.exit('The game needs pygame: pip install "pymunk-ellipse[examples]"')
     raise
 
 STEP = 1.0 / 120.0

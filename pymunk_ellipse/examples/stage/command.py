@@ -18,13 +18,13 @@ EXAMPLES = Path(__file__).parent.parent
 PACKAGE = "pymunk_ellipse.examples"
 # The extra that brings each module that some of them need.
 EXTRAS = {
-    "PIL": "demos",
+    "PIL": "examples",
     "dask": "cluster",
     "distributed": "cluster",
     "joblib": "demos",
     "matplotlib": "demos",
-    "pygame": "demos",
-    "tqdm": "demos",
+    "pygame": "examples",
+    "tqdm": "examples",
 }
 # How long each of a folder takes, in seconds.
 SECONDS = "seconds.json"

@@ -95,7 +95,7 @@ def test_relative_velocity_is_that_of_the_touching_points():
 def test_contact_mass_is_what_a_push_does():
     for one, other in pairs():
         meeting = meeting_of(one, other)
-        _distance, nx, ny, _px, _py, _qx, _qy = meeting
+        _distance, nx, ny, *_arms = meeting
 
         def velocity(jx, jy, one=one, other=other, meeting=meeting):
             pushed = (

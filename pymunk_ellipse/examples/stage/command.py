@@ -56,7 +56,9 @@ def listing(titles: dict[str, Path]) -> str:
 
 def duration(seconds: float) -> str:
     """A time to wait, in words."""
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+    if seconds < 100:
+        return f"{max(1.0, seconds):.0f} s"
+    return f"{seconds / 60:.0f} min"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

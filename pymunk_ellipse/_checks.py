@@ -40,7 +40,7 @@ def _real(name: str, value: Any) -> float:
     """value as a float, of whatever is a real number: Python's, numpy's, a Decimal or a Fraction."""
     if type(value) is float:
         return value
-    if not is_real(value):
+    if type(value) is not int and not is_real(value):
         raise TypeError(f"{name} must be a number, got {value!r}")
     try:
         return float(value)
@@ -84,7 +84,10 @@ def point(name: str, value: Any) -> Vec2d:
     Raises TypeError for what is not a pair in order, and for what number() does not take;
     ValueError for more or fewer numbers, and for those that are not finite.
     """
-    if isinstance(value, (str, bytes, bytearray, Set, Mapping)) or is_masked(value):
+    # Whether other types have an order is slow to find out.
+    if type(value) not in (tuple, Vec2d, list) and (
+        isinstance(value, (str, bytes, bytearray, Set, Mapping)) or is_masked(value)
+    ):
         raise TypeError(f"{name} must be two numbers, got {value!r}")
     try:
         x, y = value

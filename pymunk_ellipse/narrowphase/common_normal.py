@@ -204,6 +204,7 @@ def climb(pair: Pair, nx: float, ny: float) -> Maximum:
         mx = nx - turn * ny
         my = ny + turn * nx
 
+    # The last turn, on the two circles and with what the first one's radius changes by.
     if abs(turn) <= TURN_TOLERANCE:
         half_square = 0.5 * turn * turn
         along = radius * turn + change1 * half_square

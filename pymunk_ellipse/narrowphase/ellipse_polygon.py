@@ -147,7 +147,10 @@ def climb_between(
     mx: float,
     my: float,
 ) -> Contact:
-    """The maximum of f for vertex i between n and m, less than half a turn apart, from which f rises to both sides' middle."""
+    """A maximum of f around vertex i, which is the nearest from n to m; f rises from both into the arc between.
+
+    The arc is halved until the climb does not leave it.
+    """
     contact, slope = along_normal(ellipse, vertex(planes, i), radius, nx, ny)
     sense = 1.0 if slope >= 0.0 else -1.0
     for _ in range(MAX_HALVINGS):

@@ -9,6 +9,7 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from math import ceil
 from pathlib import Path
 from types import ModuleType
 
@@ -55,10 +56,14 @@ def listing(titles: dict[str, Path]) -> str:
 
 
 def duration(seconds: float) -> str:
-    """A time to wait, in words."""
+    """A time to wait, in words.
+
+    >>> duration(0.2), duration(12.7), duration(150.0)
+    ('1 s', '13 s', '3 min')
+    """
     if seconds < 100:
-        return f"{max(1.0, seconds):.0f} s"
-    return f"{seconds / 60:.0f} min"
+        return f"{max(1, round(seconds))} s"
+    return f"{ceil(seconds / 60)} min"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -58,9 +58,13 @@ def built(session: nox.Session, kind: str) -> Path:
     return found[0]
 
 
-def run_tests(session: nox.Session, extras: str, *arguments: str) -> None:
-    """Run the sdist's tests, and the doctests, on the wheel, which is installed already."""
-    session.install(f"{built(session, '.whl')}[{extras}]")
+def install(session: nox.Session, extras: str, *others: str) -> None:
+    """Install the wheel with extras, and what else is named."""
+    session.install(f"{built(session, '.whl')}[{extras}]", *others)
+
+
+def run_tests(session: nox.Session, *arguments: str) -> None:
+    """Run the sdist's tests, and the doctests, on what is installed."""
     sdist = built(session, ".tar.gz")
     place = Path(session.create_tmp())
     shutil.unpack_archive(sdist, place)
@@ -83,31 +87,37 @@ WITHOUT_DEMOS = "--ignore=tests/test_demos.py"
 @nox.parametrize("pymunk", PYMUNKS, ids=PYMUNKS)
 def tests(session: nox.Session, pymunk: str, backend: str) -> None:
     """Run the tests on one pymunk, with the library and where it is not there."""
-    session.install(f"pymunk=={pymunk}", str(built(session, ".whl")))
+    install(session, "test", f"pymunk=={pymunk}")
     if backend == "python":
-        # Out of this session's environment.
-        session.run("python", "-c", REMOVE_LIBRARY)
-    run_tests(session, "test", WITHOUT_DEMOS)
+        # Isolated from the checkout: the library goes from this session's environment.
+        session.run("python", "-I", "-c", REMOVE_LIBRARY)
+    run_tests(session, WITHOUT_DEMOS)
 
 
 REMOVE_LIBRARY = """
+import sys
 from pathlib import Path
 import pymunk_ellipse
-for library in Path(pymunk_ellipse.__file__).parent.glob("_kernel-*"):
+package = Path(pymunk_ellipse.__file__).parent
+assert package.is_relative_to(sys.prefix)
+for library in package.glob("_kernel-*"):
     library.unlink()
+assert pymunk_ellipse.backend() == "python"
 """
 
 
 @nox.session(python=PYTHONS, requires=["build"])
 def pythons(session: nox.Session) -> None:
     """Run the tests on one Python."""
-    run_tests(session, "test", WITHOUT_DEMOS)
+    install(session, "test")
+    run_tests(session, WITHOUT_DEMOS)
 
 
 @nox.session(requires=["build"])
 def everything(session: nox.Session) -> None:
     """Run all tests: also those of the demos, of sweeps on a cluster and of the code in the documentation."""
-    run_tests(session, "test,demos,cluster", "docs", "README.md")
+    install(session, "test,demos,cluster")
+    run_tests(session, "docs", "README.md")
 
 
 @nox.session(requires=["build"])

@@ -376,7 +376,7 @@ def test_a_slow_touch_stays_as_it_is():
         add_floor(space, 0.9, 0.5)
         body = add_flyer(space, Flyer(20.0, 10.0, 0.0, 10.12, vy=-8.0))
         path = []
-        for _ in range(30):
+        for _ in range(3):
             space.step(1 / 60)
             path.append((*body.position, body.angle))
         paths.append(path)

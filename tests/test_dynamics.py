@@ -67,12 +67,11 @@ def scene_balls(space, make):
 
 
 def scene_offset(space, make):
-    """Wheels beside the centre of gravity."""
+    """A wheel beside the origin of its body, about the centre of gravity."""
     add_floor(space)
     body = add_body(space, (0, 8), 0.2, (20, 0), 1, 3, 200)
-    body.center_of_gravity = 1, 0.5
-    for offset in ((-6, -2), (6, -2)):
-        yield body, make(body, 4, offset)
+    body.center_of_gravity = 6, -2
+    yield body, make(body, 4, (6, -2))
 
 
 def scene_dynamic_polygon(space, make):

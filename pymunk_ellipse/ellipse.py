@@ -169,7 +169,8 @@ class Ellipse(pymunk.Poly):
 
         .. note::
             As with the other unsafe setters of pymunk, the change is picked up as a change of
-            the surface's position, not of its velocity.
+            the surface's position, not of its velocity. Without a body the ellipse is then
+            where it was before any update.
 
         Raises what the constructor raises.
         """
@@ -191,9 +192,12 @@ class Ellipse(pymunk.Poly):
             self, self._unit_polygon, *hull.stretch(self._frame, self._rounding)
         )
         self._become_ellipse()
-        if self.mass > 0.0:
-            # Once more, for the body to take over the new moment.
-            self.mass = self.mass
+        if self.body is not None:
+            if self.mass > 0.0:
+                # Once more, for the body to take over the new moment.
+                self.mass = self.mass
+            # A step may be on its way, which has placed its shapes already.
+            self.cache_bb()
 
     @property
     def radius(self) -> float:
@@ -298,8 +302,10 @@ class Ellipse(pymunk.Poly):
         (Vec2d(0.0, 1.0), 3.0, Vec2d(0.0, 1.0))
         """
         point = _checks.point("p", p)
-        _forget_dead_body(self)
-        distance, nx, ny, px, py = kernel().nearest_now(self._shape, point.x, point.y)
+        with _Orphans(self):
+            distance, nx, ny, px, py = kernel().nearest_now(
+                self._shape, point.x, point.y
+            )
         return PointQueryInfo(self, Vec2d(px, py), distance, Vec2d(nx, ny))
 
     def segment_query(
@@ -326,17 +332,17 @@ class Ellipse(pymunk.Poly):
         start = _checks.point("start", start)
         end = _checks.point("end", end)
         radius = _checks.number("radius", radius)
-        _forget_dead_body(self)
-        alpha, nx, ny, px, py = kernel().cast_now(
-            self._shape, start.x, start.y, end.x, end.y, radius
-        )
+        with _Orphans(self):
+            alpha, nx, ny, px, py = kernel().cast_now(
+                self._shape, start.x, start.y, end.x, end.y, radius
+            )
         if alpha > 1.0:
             return None
         return SegmentQueryInfo(self, Vec2d(px, py), Vec2d(nx, ny), alpha)
 
     def _placed(self) -> Frame:
-        _forget_dead_body(self)
-        return frame_now(hull_at(self._shape))
+        with _Orphans(self):
+            return frame_now(hull_at(self._shape))
 
     def shapes_collide(self, b: pymunk.Shape) -> ContactPointSet:
         """Get contact information about this ellipse and shape b.
@@ -380,9 +386,8 @@ class Ellipse(pymunk.Poly):
     def _contact(self, name: str, other: Any) -> ShapeContact:
         if not isinstance(other, pymunk.Shape):
             raise TypeError(f"{name} must be a pymunk.Shape, got {other!r}")
-        _forget_dead_body(self)
-        _forget_dead_body(other)
-        return kernel().shape_contact(self._shape, other._shape)
+        with _Orphans(self, other):
+            return kernel().shape_contact(self._shape, other._shape)
 
     # pymunk tells a shape that it enters or leaves a space by setting this.
     @property
@@ -409,7 +414,25 @@ class Ellipse(pymunk.Poly):
         return state
 
 
-def _forget_dead_body(shape: pymunk.Shape) -> None:
-    """Have a C shape not point to a body that is gone: a shape does not keep its body alive."""
-    if shape.body is None:
-        shape_at(shape._shape).on_body = 0
+class _Orphans:
+    """Has C shapes whose body is gone point to none for a while: a shape does not keep its body alive.
+
+    Not for good, because by that pointer Chipmunk takes a shape out of its space.
+    """
+
+    __slots__ = ("_bodies",)
+
+    def __init__(self, *shapes: pymunk.Shape) -> None:
+        self._bodies: list[tuple[Any, int]] = []
+        for shape in shapes:
+            if shape.body is None:
+                cp_shape = shape_at(shape._shape)
+                self._bodies.append((cp_shape, cp_shape.on_body))
+
+    def __enter__(self) -> None:
+        for cp_shape, _body in self._bodies:
+            cp_shape.on_body = 0
+
+    def __exit__(self, *error: object) -> None:
+        for cp_shape, body in self._bodies:
+            cp_shape.on_body = body

@@ -180,6 +180,14 @@ class EventSpace(pymunk.Space):
         return EventHandler(handler, space, self._touches)
 
     def step(self, dt: float) -> None:
-        """Update the space for the given time step, see pymunk.Space.step."""
+        """Update the space for the given time step, see pymunk.Space.step.
+
+        Raises RuntimeError in a callback of the same space: some of them are called while Chipmunk
+        goes through its pairs, which a step within the step would change.
+        """
+        if self._locked:
+            raise RuntimeError(
+                "step must not be called in a callback of the same space"
+            )
         self._touches.current = None
         super().step(dt)

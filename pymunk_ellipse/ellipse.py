@@ -185,12 +185,16 @@ class Ellipse(pymunk.Poly):
 
     def _reshape(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._set_frame(a, b, offset, angle)
+        at = _last_update(self)
         # Chipmunk sets the vertices of what has the class of polygons, and nothing else's.
         shape_at(self._shape).klass = self._polygon_class
         set_polygon(
             self, self._unit_polygon, *hull.stretch(self._frame, self._rounding)
         )
         self._become_ellipse()
+        # What was placed in the world has gone with the old vertices, and the rest of a step, or a
+        # query, may ask for it before the next update.
+        super().update(at)
         if self.mass > 0.0:
             # Once more, for the body to take over the new moment.
             self.mass = self.mass
@@ -413,3 +417,15 @@ def _forget_dead_body(shape: pymunk.Shape) -> None:
     """Have a C shape not point to a body that is gone: a shape does not keep its body alive."""
     if shape.body is None:
         shape_at(shape._shape).on_body = 0
+
+
+def _last_update(ellipse: Ellipse) -> pymunk.Transform:
+    """The transform with which an ellipse was updated last; the identity before the first time."""
+    cp_hull = hull_at(ellipse._shape)
+    _a, _b, c, s, x, y = cp_hull.local
+    _a, _b, world_c, world_s, world_x, world_y = cp_hull.world
+    cos = c * world_c + s * world_s
+    sin = c * world_s - s * world_c
+    return pymunk.Transform(
+        cos, sin, -sin, cos, world_x - cos * x + sin * y, world_y - sin * x - cos * y
+    )

@@ -186,13 +186,17 @@ class Ellipse(pymunk.Poly):
 
     def _reshape(self, a: Any, b: Any, offset: Any, angle: Any) -> None:
         self._set_frame(a, b, offset, angle)
+        at = _last_update(self)
         # Chipmunk sets the vertices of what has the class of polygons, and nothing else's.
         shape_at(self._shape).klass = self._polygon_class
         set_polygon(
             self, self._unit_polygon, *hull.stretch(self._frame, self._rounding)
         )
         self._become_ellipse()
-        if self.body is not None:
+        if self.body is None:
+            # What was placed in the world has gone with the old vertices.
+            super().update(at)
+        else:
             if self.mass > 0.0:
                 # Once more, for the body to take over the new moment.
                 self.mass = self.mass
@@ -436,3 +440,15 @@ class _Orphans:
     def __exit__(self, *error: object) -> None:
         for cp_shape, body in self._bodies:
             cp_shape.on_body = body
+
+
+def _last_update(ellipse: Ellipse) -> pymunk.Transform:
+    """The transform with which an ellipse was updated last; the identity before the first time."""
+    cp_hull = hull_at(ellipse._shape)
+    _a, _b, c, s, x, y = cp_hull.local
+    _a, _b, world_c, world_s, world_x, world_y = cp_hull.world
+    cos = c * world_c + s * world_s
+    sin = c * world_s - s * world_c
+    return pymunk.Transform(
+        cos, sin, -sin, cos, world_x - cos * x + sin * y, world_y - sin * x - cos * y
+    )

@@ -14,7 +14,7 @@ from pymunk import Vec2d
 from scenes import lone_body
 from test_mass import check_mass
 
-from pymunk_ellipse import Ellipse
+from pymunk_ellipse import Ellipse, Space
 
 # Arguments
 
@@ -194,6 +194,70 @@ def test_unsafe_setters_change_contacts_at_work():
     egg.unsafe_set_angle(pi / 2)
     space.step(1e-9)
     assert depths[2:] == [pytest.approx(-1.25)]
+
+
+def test_unsafe_setters_leave_it_where_it_was_updated_last():
+    egg = Ellipse(None, 2, 1, (3, -1), 0.4)
+    at = pymunk.Transform.translation(50, 60) @ pymunk.Transform.rotation(0.7)
+    egg.update(at)
+    egg.unsafe_set_semi_axes(1, 2)
+    egg.unsafe_set_offset((5, 4))
+    egg.unsafe_set_angle(-0.3)
+    [new, same] = Ellipse(None, 1, 2, (5, 4), -0.3), egg
+    new.update(at)
+    assert same.bb == pytest.approx(new.bb)
+    assert same.outline()[0] == pytest.approx(new.outline()[0])
+
+
+@pytest.mark.parametrize("space_class", [pymunk.Space, Space])
+def test_queries_find_what_has_grown_since_the_last_step(space_class):
+    space = space_class()
+    shapes = Ellipse(lone_body(100, 60), 2, 2), pymunk.Circle(lone_body(-100, 60), 2)
+    for shape in shapes:
+        space.add(shape.body, shape)
+    space.step(0.01)
+    egg, ball = shapes
+    egg.unsafe_set_semi_axes(3, 3)
+    ball.unsafe_set_radius(3)
+    for shape in shapes:
+        x = shape.body.position.x
+        found = space.point_query_nearest((x, 61.5), 0, pymunk.ShapeFilter())
+        assert found.shape is shape
+        assert found.distance == pytest.approx(-1.5)
+
+
+@pytest.mark.parametrize("space_class", [pymunk.Space, Space])
+@pytest.mark.parametrize("floor_first", [False, True])
+def test_what_grows_in_a_callback_still_meets_the_others(space_class, floor_first):
+    heights = []
+    for shape, grow in (
+        (
+            pymunk.Circle(lone_body(9, 10), 10),
+            lambda s: s.unsafe_set_radius(s.radius + 0.02),
+        ),
+        (
+            Ellipse(lone_body(9, 10), 10, 10),
+            lambda s: s.unsafe_set_semi_axes(s.a + 0.02, s.b + 0.02),
+        ),
+    ):
+        space = space_class()
+        space.gravity = 0, -900
+        floor = pymunk.Segment(space.static_body, (-90, 0), (90, 0), 0)
+        wand = pymunk.Circle(space.static_body, 3, (9, 12))
+        shape.collision_type = 1
+        floors = [floor, wand] if floor_first else [wand, floor]
+
+        def touch(arbiter, space, data, shape=shape, grow=grow, wand=wand):
+            grow(shape)
+            arbiter.process_collision = wand not in arbiter.shapes
+
+        space.on_collision(1, 0, pre_solve=touch)
+        space.add(shape.body, shape, *floors)
+        for _ in range(60):
+            space.step(1 / 60)
+        heights.append(shape.body.position.y)
+    assert heights[0] > 10
+    assert heights[1] == pytest.approx(heights[0], abs=0.1)
 
 
 # What any shape can do

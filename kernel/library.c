@@ -72,26 +72,30 @@ EXPORTED void *pe_shape_class(const void *of_polygons) {
     return &pe_ellipse_class;
 }
 
-EXPORTED void pe_resolve(void *arbiter, void *space, int exact_impacts) {
+static void resolve(void *arbiter, void *space, int exact_impacts) {
     void *result = 0, *exception = 0;
     pe_native_resolve(&result, &exception, (intptr_t)arbiter, (intptr_t)space, exact_impacts != 0);
 }
 
-EXPORTED void pe_complete(void *arbiter, void *space) {
+static void complete(void *arbiter, void *space) {
     void *result = 0, *exception = 0;
     pe_native_complete(&result, &exception, (intptr_t)arbiter, (intptr_t)space);
 }
 
+EXPORTED void pe_resolve(void *arbiter, void *space, int exact_impacts) { resolve(arbiter, space, exact_impacts); }
+
+EXPORTED void pe_complete(void *arbiter, void *space) { complete(arbiter, space); }
+
 EXPORTED void pe_pre_solve(void *arbiter, void *space, void *data) {
     (void)data;
-    pe_resolve(arbiter, space, 0);
-    pe_complete(arbiter, space);
+    resolve(arbiter, space, 0);
+    complete(arbiter, space);
 }
 
 EXPORTED void pe_pre_solve_with_impacts(void *arbiter, void *space, void *data) {
     (void)data;
-    pe_resolve(arbiter, space, 1);
-    pe_complete(arbiter, space);
+    resolve(arbiter, space, 1);
+    complete(arbiter, space);
 }
 
 EXPORTED void pe_shape_contact(void *ellipse, void *shape, double *result) {

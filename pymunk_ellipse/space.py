@@ -106,8 +106,9 @@ class Space(EventSpace):
         self._touches.contacts.exact_impacts = _checks.switch("exact_impacts", exact)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a copy or a pickle keeps: pymunk's state, and how the last step's contacts still move bodies."""
-        return {**super().__getstate__(), "bias": bias_velocities(self)}
+        """What a copy or a pickle keeps: pymunk's state, and with exact impacts how those of the last step still move bodies."""
+        bias = bias_velocities(self) if self.exact_impacts else []
+        return {**super().__getstate__(), "bias": bias}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         super().__setstate__(state)

@@ -80,7 +80,9 @@ def stale_with_other_functions(package):
     """Built when those that it exports, but for the digest, had other names."""
     names = (package / LIBRARY).read_bytes().replace(b"\0pe_", b"\0qe_")
     replaced(lambda library: names.replace(b"\0qe_digest", b"\0pe_digest"))(package)
-    return stale(package)
+    stale(package)
+    # Which of the two is noticed first depends on the linker.
+    return ""
 
 
 def truncated(part):

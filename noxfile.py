@@ -153,13 +153,13 @@ def selfcheck(session: nox.Session) -> None:
 def frozen(session: nox.Session, kind: str) -> None:
     """Freeze a small program with PyInstaller as one folder or one file, and run it."""
     session.install(str(built(session, ".whl")), "pyinstaller")
-    place = session.create_tmp()
+    place = Path(session.create_tmp()).resolve()
     session.chdir(place)
     program = ROOT / "tests" / "small_program.py"
     session.run(
         *("pyinstaller", "--noconfirm", "--log-level=WARN", f"--{kind}", str(program))
     )
-    made = Path(place, "dist", "small_program")
+    made = place / "dist" / "small_program"
     if kind == "onedir":
         made /= "small_program"
     session.run(str(made) + (".exe" if sys.platform == "win32" else ""), external=True)

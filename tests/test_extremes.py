@@ -178,7 +178,7 @@ def drop_everything(arbiter, space, shapes):
         if shape.body is not space.static_body and shape.space is not None:
             space.remove(shape, shape.body)
             shape.body._shapes.pop(shape, None)
-    gc.collect()
+    gc.collect(1)
 
 
 def bring_another(arbiter, space, shapes):
@@ -259,7 +259,7 @@ def test_callbacks_may_do_all_that_they_may_with_polygons(act, phase, kind):
             act(arbiter, space, shapes)
 
     space.on_collision(**{phase: callback})
-    for i in range(60):
+    for i in range(40):
         for body in bodies:
             if i % 10 == 5 and rng.random() < 0.5:
                 body.velocity = rng.uniform(-200, 200), 300

@@ -321,7 +321,6 @@ KEPT = {
             ("space", "body", "egg", "floor", "twin"),
             ("twin", "floor", "egg", "body", "space"),
             ("egg", "space"),
-            ("body", "egg"),
             ("egg",),
         )
     },

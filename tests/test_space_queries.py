@@ -80,6 +80,8 @@ def test_hits_keep_the_order_of_their_hulls():
 def test_boxes_in_a_space():
     rng = np.random.default_rng(9)
     space = crowd(rng)
+    boxes = {shape: shape.bb for shape in space.shapes}
+    hulls = {shape: hull_of(shape).bb for shape in ellipses_in(space)}
     fewer = 0
     for corner, size in zip(
         rng.uniform(-50, 50, (COUNT, 2)), rng.uniform(0, 9, (COUNT, 2)), strict=True
@@ -90,13 +92,13 @@ def test_boxes_in_a_space():
             assert found == pymunk.Space.bb_query(space, box, shape_filter)
             expected = {
                 shape
-                for shape in space.shapes
-                if shape.bb.intersects(box) and seen(shape, shape_filter.mask)
+                for shape, bb in boxes.items()
+                if bb.intersects(box) and seen(shape, shape_filter.mask)
             }
             assert set(found) == expected
             fewer += sum(
-                hull_of(shape).bb.intersects(box)
-                for shape in ellipses_in(space)
+                bb.intersects(box)
+                for shape, bb in hulls.items()
                 if shape not in expected and seen(shape, shape_filter.mask)
             )
     assert fewer > 100

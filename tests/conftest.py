@@ -9,12 +9,20 @@ from pymunk_ellipse.contacts import backend as backends
 from pymunk_ellipse.contacts.library import load
 
 
+@pytest.fixture(scope="session")
+def built():
+    """The compiled library; without one for this machine the test is skipped."""
+    library = load()
+    if library is None:
+        pytest.skip("there is no library for this machine")
+    return library
+
+
 @pytest.fixture(params=["python", "compiled"])
 def backend(request):
     """Resolves contacts in one way, then in the other."""
-    chosen = backends.Python() if request.param == "python" else load()
-    if chosen is None:
-        pytest.skip("there is no library for this machine")
+    python = request.param == "python"
+    chosen = backends.Python() if python else request.getfixturevalue("built")
     with backends.using(chosen):
         yield request.param
 

@@ -37,7 +37,7 @@ print(json.dumps([pymunk_ellipse.backend(), path]))
 """
 
 
-def test_a_pile_moves_alike_in_both_backends():
+def test_a_pile_moves_alike_in_both_backends(built):
     paths = {}
     for choice in ("python", "compiled"):
         printed, _ = run_code(PILE, PYMUNK_ELLIPSE_BACKEND=choice)

@@ -19,13 +19,6 @@ def choose_again(monkeypatch):
     backends.use(before)
 
 
-@pytest.fixture
-def built():
-    """There is a library to choose."""
-    if library.load() is None:
-        pytest.skip("there is no library for this machine")
-
-
 def test_python(monkeypatch):
     monkeypatch.setenv(VARIABLE, "python")
     assert pymunk_ellipse.backend() == "python"

@@ -12,7 +12,6 @@ from test_proof import FIELDS, PARTS
 from pymunk_ellipse import Ellipse
 from pymunk_ellipse.chipmunk.structs import address
 from pymunk_ellipse.contacts import backend as backends
-from pymunk_ellipse.contacts.library import load
 
 # Second names of the same place.
 ALIASES = {
@@ -26,17 +25,14 @@ ALIASES = {
 
 
 @pytest.fixture(scope="module")
-def numba():
+def numba(built):
     """Numba's kernel, while ellipses are those of the library."""
     pytest.importorskip("numba")
-    library = load()
-    if library is None:
-        pytest.skip("there is no library for this machine")
-    with backends.using(library):
+    with backends.using(built):
         yield jitted.kernel()
 
 
-def test_a_pile_moves_alike(numba):
+def test_a_pile_moves_alike(numba, built):
     def path(kernel):
         with backends.using(kernel):
             space = crowded_pile()
@@ -46,7 +42,7 @@ def test_a_pile_moves_alike(numba):
                 places.append([(*body.position, body.angle) for body in space.bodies])
             return places
 
-    library, reference = path(load()), path(numba)
+    library, reference = path(built), path(numba)
     assert max(abs(place[2]) for place in library[-1]) > 3
     assert library == reference
 

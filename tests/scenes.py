@@ -135,9 +135,9 @@ def settle(space, seconds=6.0, dt=1 / 120):
         space.step(dt)
 
 
-def crowded_pile():
+def crowded_pile(space):
     """Ellipses in a box that fall, with shapes of every other kind upon them, and may fall asleep."""
-    space = make_space((0, -500))
+    space.gravity = 0, -500
     add_box(space, 60, 300)
     for i in range(60):
         place = 18 * (i % 6) - 45 + i % 5, 10 + 14 * (i // 6)

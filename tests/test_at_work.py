@@ -26,9 +26,9 @@ from pymunk_ellipse.chipmunk.structs import address
 
 PILE = """
 import json
-import pymunk_ellipse
+import pymunk, pymunk_ellipse
 from scenes import crowded_pile
-space = crowded_pile()
+space = crowded_pile(pymunk.Space())
 path = []
 for _ in range(120):
     space.step(1 / 120)

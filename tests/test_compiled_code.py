@@ -4,12 +4,13 @@ import random
 from math import cos, sin
 
 import jitted
+import pymunk
 import pytest
 from pymunk import Transform
 from scenes import crowded_pile
 from test_proof import FIELDS, PARTS
 
-from pymunk_ellipse import Ellipse
+from pymunk_ellipse import Ellipse, Space
 from pymunk_ellipse.chipmunk.structs import address
 from pymunk_ellipse.contacts import backend as backends
 
@@ -32,10 +33,13 @@ def numba(built):
         yield jitted.kernel()
 
 
-def test_a_pile_moves_alike(numba, built):
+@pytest.mark.parametrize(
+    "make", [pymunk.Space, lambda: Space(exact_impacts=True)], ids=["plain", "impacts"]
+)
+def test_a_pile_moves_alike(make, numba, built):
     def path(kernel):
         with backends.using(kernel):
-            space = crowded_pile()
+            space = crowded_pile(make())
             places = []
             for _ in range(240):
                 space.step(1 / 120)

@@ -7,7 +7,6 @@ whose hull still stands for the ellipse in collisions, with these functions repl
 
 from __future__ import annotations
 
-import ctypes
 from typing import Any
 
 from ..narrowphase.cast import Hit, crosses_box, segment_hit
@@ -146,6 +145,9 @@ def keep_for_ever(thing: Any) -> None:
 
     PyPy frees nothing at its exit, and has no reference counts.
     """
+    # Here, because it takes half as long as the import of the whole package.
+    import ctypes
+
     _kept.append(thing)
     python = getattr(ctypes, "pythonapi", None)
     if python is not None and hasattr(python, "Py_IncRef"):

@@ -8,12 +8,13 @@ from math import atan2
 from types import ModuleType
 from typing import Any
 
-import pymunk_ellipse.contacts.backend as backends
+import pymunk_ellipse.contacts.interpreted as interpreted
 import pymunk_ellipse.contacts.pair as pair
 import pymunk_ellipse.contacts.resolver as resolver
 import pymunk_ellipse.narrowphase.ellipse_ellipse as ellipse_ellipse
 import pymunk_ellipse.narrowphase.ellipse_polygon as ellipse_polygon
 from pymunk_ellipse.chipmunk.structs import arbiter_at, hull_at
+from pymunk_ellipse.contacts.backend import using
 from pymunk_ellipse.contacts.handover import LastContact
 from pymunk_ellipse.narrowphase.ellipse_ellipse import Contact
 from pymunk_ellipse.narrowphase.frame import Frame
@@ -26,7 +27,7 @@ SHIPPED = "shipped"
 def replaced(*replacements: tuple[ModuleType, str, Any]) -> Iterator[None]:
     """Resolve contacts in Python, with other things under some names of some modules."""
     with ExitStack() as undo:
-        undo.enter_context(backends.using(backends.Python()))
+        undo.enter_context(using(interpreted.Python()))
         for module, name, replacement in replacements:
             undo.callback(setattr, module, name, getattr(module, name))
             setattr(module, name, replacement)
@@ -36,7 +37,7 @@ def replaced(*replacements: tuple[ModuleType, str, Any]) -> Iterator[None]:
 @contextmanager
 def without_warm_start() -> Iterator[None]:
     """No contact takes over the impulses of the last step."""
-    whole = backends.resolve
+    whole = interpreted.resolve
 
     def resolve(address: int, *arguments: Any) -> None:
         whole(address, *arguments)
@@ -45,7 +46,7 @@ def without_warm_start() -> Iterator[None]:
             arbiter.contact.jnAcc = 0.0
             arbiter.contact.jtAcc = 0.0
 
-    with replaced((backends, "resolve", resolve)):
+    with replaced((interpreted, "resolve", resolve)):
         yield
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from math import isclose, pi
-from typing import Any, ClassVar, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn
 
 import pymunk
 from pymunk import (
@@ -22,9 +22,11 @@ from .chipmunk.shape_class import frame_now
 from .chipmunk.structs import INLINE_VERTICES, ellipse_class, hull_at, shape_at
 from .contacts import handler
 from .contacts.backend import kernel
-from .contacts.pair import ShapeContact
 from .narrowphase.frame import Frame, frame_of, half_extents
 from .outline import outline_vertices
+
+if TYPE_CHECKING:
+    from .contacts.pair import ShapeContact
 
 
 class ShapeDistance(NamedTuple):

@@ -6,6 +6,7 @@ import pytest
 import scenes
 
 from pymunk_ellipse.contacts import backend as backends
+from pymunk_ellipse.contacts.interpreted import Python
 from pymunk_ellipse.contacts.library import load
 
 
@@ -22,7 +23,7 @@ def built():
 def backend(request):
     """Resolves contacts in one way, then in the other."""
     python = request.param == "python"
-    chosen = backends.Python() if python else request.getfixturevalue("built")
+    chosen = Python() if python else request.getfixturevalue("built")
     with backends.using(chosen):
         yield request.param
 

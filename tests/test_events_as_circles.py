@@ -3,6 +3,7 @@
 import itertools
 import random
 from collections import Counter
+from functools import cache
 from typing import NamedTuple
 
 import pymunk
@@ -220,9 +221,15 @@ PLAYS = [
 ]
 
 
+@cache
+def events_of_circles(policy, keys):
+    """The same for both backends."""
+    return by_pair(Play(1, pymunk.Space(), as_circle, policy, keys).run(60))
+
+
 @pytest.mark.parametrize(("policy", "keys"), PLAYS, ids=str)
 def test_same_events_as_circles(policy, keys, mistakes):
-    expected = by_pair(Play(1, pymunk.Space(), as_circle, policy, keys).run(60))
+    expected = events_of_circles(policy, tuple(keys))
     found = by_pair(Play(1, Space(), as_ellipse, policy, keys).run(60))
     if policy == "errors":
         assert {type(mistake) for mistake in mistakes} == {RuntimeError}
@@ -232,7 +239,8 @@ def test_same_events_as_circles(policy, keys, mistakes):
         one, two = expected.get(which, []), found.get(which, [])
         assert [e[:-1] for e in two] == [e[:-1] for e in one], which
         for a, b in zip(one, two, strict=True):
-            assert b.numbers == pytest.approx(a.numbers, abs=1e-6), (a, b)
+            pairs = zip(a.numbers, b.numbers, strict=True)
+            assert all(abs(x - y) <= 1e-6 for x, y in pairs), (a, b)
 
 
 def test_pairs_without_an_ellipse_are_untouched():

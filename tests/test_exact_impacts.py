@@ -449,6 +449,34 @@ def test_restitution_that_a_callback_sets_is_that_of_the_impact(key, elasticity)
     assert paths[0] == paths[1]
 
 
+# What is hit is not carried too far
+
+
+THIN = {
+    "ellipse": lambda body: Ellipse(body, 30, 4),
+    "segment": lambda body: pymunk.Segment(body, (-20, 0), (20, 0), 4),
+    "polygon": lambda body: pymunk.Poly.create_box(body, (40, 6), 1),
+    "circle": lambda body: pymunk.Circle(body, 4),
+}
+
+
+@pytest.mark.parametrize("kind", THIN)
+def test_what_is_hit_is_not_carried_through_a_wall(kind):
+    """A body on a thin wall, hit at any time of a step so hard that in a step it goes by its own half thickness."""
+    for part in range(12):
+        space = new_space(True, WEIGHTLESS)
+        add_floor(space)
+        body = pymunk.Body(1, 1000)
+        body.position = 0, 4.5
+        shape = THIN[kind](body)
+        shape.elasticity = 1
+        space.add(body, shape)
+        add_flyer(space, Flyer(20.0, 10.0, 0.0, 21.0 + part / 3, vy=-240.0))
+        for _ in range(10):
+            space.step(1 / 60)
+        assert body.position.y > 0
+
+
 # The switch
 
 

@@ -19,10 +19,14 @@ from ..narrowphase.impact import (
     relative_velocity,
     seen_earlier,
 )
-from .pair import contact_of
+from .pair import contact_of, half_thickness
 
 # The time of a meeting that is no impact.
 NO_IMPACT = -1.0
+
+# How far a body may move in the step after it was hit by another one, in half of what its shape
+# is thick. If it is carried on farther, it may pass a thin wall behind it.
+CARRIED_MOST = 0.75
 
 # How often the time of an impact is corrected. Each time doubles its right digits; what is left
 # changes the angular momentum when there is friction.
@@ -34,6 +38,33 @@ def motion_of(body: Any) -> Motion:
     at = body.p
     velocity = body.v
     return at.x, at.y, velocity.x, velocity.y, body.w
+
+
+def impact_of(
+    ellipse: Frame,
+    shape: Any,
+    body: Any,
+    other: Any,
+    other_body: Any,
+    contact: Contact,
+    space: Any,
+) -> tuple[float, Meeting]:
+    """How long ago an ellipse and another shape, which have a new contact, have hit each other, and how; NO_IMPACT if they did not in this step.
+
+    There is none either where the impulse cannot be told ahead. shape is that of the ellipse, on
+    its body.
+    """
+    one = motion_of(body)
+    another = motion_of(other_body)
+    now = meeting_earlier(contact, ellipse, one, another, 0.0)
+    if not (
+        shape.sensor == 0
+        and other.sensor == 0
+        and is_free(body, space)
+        and is_free(other_body, space)
+    ):
+        return NO_IMPACT, now
+    return when_met(ellipse, other, contact, one, another, space)
 
 
 def is_free(body: Any, space: Any) -> bool:
@@ -81,7 +112,8 @@ def when_met(
         then = contact_of(seen, shape, nx, ny)
         met = meeting_earlier(then, seen, one, other, time)
         approach, _sliding = relative_velocity(one, other, met)
-        if approach >= 0.0:
+        # An end of a segment that counts now may not have counted then, and be as far as it gets.
+        if approach >= 0.0 or abs(met[0]) > -approach * dt:
             break
         if correction == CORRECTIONS:
             return time, met
@@ -152,10 +184,13 @@ def carry_on(arbiter: Any, space: Any, time: float) -> None:
     surface.x -= rise * nx - along * ny
     surface.y -= rise * ny + along * nx
     part = moved / dt
-    jx = part * (jn * nx - jt * ny)
-    jy = part * (jn * ny + jt * nx)
-    push(body_a, -jx, -jy, ax, ay)
-    push(body_b, jx, jy, bx, by)
+    jx = jn * nx - jt * ny
+    jy = jn * ny + jt * nx
+    push(body_a, -part * jx, -part * jy, ax, ay)
+    push(body_b, part * jx, part * jy, bx, by)
+    if body_a.m_inv > 0.0 and body_b.m_inv > 0.0:
+        hold(body_a, -jx, -jy, CARRIED_MOST * half_thickness(arbiter.shape_a), dt)
+        hold(body_b, jx, jy, CARRIED_MOST * half_thickness(arbiter.shape_b), dt)
 
 
 def push(body: Any, jx: float, jy: float, x: float, y: float) -> None:
@@ -164,3 +199,18 @@ def push(body: Any, jx: float, jy: float, x: float, y: float) -> None:
     bias.x += jx * body.m_inv
     bias.y += jy * body.m_inv
     body.w_bias += (x * jy - y * jx) * body.i_inv
+
+
+def hold(body: Any, jx: float, jy: float, most: float, dt: float) -> None:
+    """Shorten a body's bias velocities, if with them and the velocity that an impulse gives it would go farther than most in the next step."""
+    velocity = body.v
+    bias = body.v_bias
+    x = velocity.x + jx * body.m_inv
+    y = velocity.y + jy * body.m_inv
+    alone = dt * sqrt(x * x + y * y)
+    carried = dt * sqrt(bias.x * bias.x + bias.y * bias.y)
+    if alone + carried > most and carried > 0.0:
+        part = max(0.0, (most - alone) / carried)
+        bias.x *= part
+        bias.y *= part
+        body.w_bias *= part

@@ -18,7 +18,7 @@ from ..chipmunk.structs import (
     shape_at,
 )
 from ..narrowphase.ellipse_ellipse import Contact, ellipse_ellipse
-from ..narrowphase.ellipse_polygon import ellipse_polygon, ellipse_segment
+from ..narrowphase.ellipse_polygon import ellipse_polygon, ellipse_segment, nearest_face
 from ..narrowphase.frame import Frame, seen_from
 
 # Distance, normal from the first to the second (x, y), and a point on each surface (x, y).
@@ -30,6 +30,21 @@ def contact_of(ellipse: Frame, shape: Any, nx: float, ny: float) -> Contact:
     if shape.klass == ellipse_class():
         return ellipse_ellipse(ellipse, frame_in(hull_at(shape).world), nx, ny)
     return contact_with(ellipse, shape, False, nx, ny)
+
+
+def half_thickness(shape: Any) -> float:
+    """How far from the middle of any shape its nearest outline is: a circle's radius, an ellipse's shorter semi-axis."""
+    if shape.klass == ellipse_class():
+        return frame_in(hull_at(shape).local)[1]
+    kind = shape.shape_class.type
+    if kind == CIRCLE:
+        half: float = circle_at(shape).r
+    elif kind == SEGMENT:
+        half = segment_at(shape).r
+    else:
+        polygon = polygon_at(shape)
+        half = polygon.r + nearest_face(polygon.planes, polygon.count)
+    return half
 
 
 def contact_with(

@@ -16,7 +16,7 @@ from ..chipmunk.structs import (
 from ..narrowphase.frame import normal_at
 from ..narrowphase.rolling import rolling_velocity, same_contact, with_restitution
 from .handover import keep_contact, last_on_body
-from .impacts import NO_IMPACT, carry_on, is_free, motion_of, when_met
+from .impacts import NO_IMPACT, carry_on, impact_of
 from .pair import contact_of
 
 # How far a round ellipse's centre may be off the centre of gravity, in its radius.
@@ -116,18 +116,8 @@ def resolve(address: int, space_address: int, exact_impacts: bool) -> None:
         roll_x, roll_y = rolling_velocity(
             body.w, other_body.w, x - last_x, y - last_y, ox - last_ox, oy - last_oy
         )
-    elif (
-        exact_impacts
-        and not lasts
-        and not circles
-        and mine.sensor == 0
-        and other.sensor == 0
-        and is_free(body, space)
-        and is_free(other_body, space)
-    ):
-        time, met = when_met(
-            ellipse, other, contact, motion_of(body), motion_of(other_body), space
-        )
+    elif exact_impacts and not lasts and not circles:
+        time, met = impact_of(ellipse, mine, body, other, other_body, contact, space)
         if time != NO_IMPACT:
             _distance, nx, ny, x, y, ox, oy = met
     if not other_is_ellipse:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import sqrt
+from math import inf, sqrt
 
 from .common_normal import (
     DEPTH_TOLERANCE,
@@ -348,6 +348,26 @@ def normal_to_edge(
 def vertex(planes: Sequence[float], i: int) -> Vector:
     """Where vertex i is."""
     return planes[4 * i], planes[4 * i + 1]
+
+
+def nearest_face(planes: Sequence[float], count: int) -> float:
+    """How far the nearest face of a polygon is from the mean of its vertices.
+
+    >>> nearest_face((3.0, -1.0, 0.0, -1.0, 3.0, 1.0, 1.0, 0.0, -3.0, 1.0, 0.0, 1.0, -3.0, -1.0, -1.0, 0.0), 4)
+    1.0
+    """
+    x = 0.0
+    y = 0.0
+    for i in range(count):
+        px, py = vertex(planes, i)
+        x += px / count
+        y += py / count
+    nearest = inf
+    for i in range(count):
+        px, py = vertex(planes, i)
+        away = (px - x) * planes[4 * i + 2] + (py - y) * planes[4 * i + 3]
+        nearest = min(nearest, away)
+    return nearest
 
 
 def along_normal(

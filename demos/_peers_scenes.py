@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from math import cos, pi, sin
 from statistics import mean, median
 from typing import NamedTuple, Protocol
 
@@ -15,16 +13,14 @@ import pymunk
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from pymunk_ellipse import Ellipse, moment_for_ellipse
+from pymunk_ellipse import Ellipse
 
 from . import pile, rocking
 from ._box import GRAVITY, STEP, filled_box
+from ._builders import Make, add_gas
 from ._peers_pairs import touching
 from ._race import CLOCK
 from ._shapes import circle_of_equal_area, inscribed_polygon
-
-# Makes the shape that stands for an ellipse with these semi-axes.
-Make = Callable[[pymunk.Body, float, float], pymunk.Shape]
 
 # The scenes with gravity are as large as they have to be for it to be the earth's.
 METRE = GRAVITY / 9.81
@@ -196,44 +192,19 @@ def rock(engine: Engine, tilt: float) -> rocking.Rocking:
     return rocking.measure(np.array(angles), tilt)
 
 
-GAS_A, GAS_B = 10.0, 5.0
-GAS_SPEED = 100.0
-GAS_PITCH = 24.0
 # So that the speeds suit Box2D, which takes no hit below 1 m/s for elastic and moves nothing by more than 2 m in a step.
 GAS_METRE = 10.0
 
 
 def gas(engine: Engine, rate: int, seconds: float) -> float:
     """The energy that an elastic gas has after some time, by that at the start."""
-    space = gas_scene(engine.make)
+    space = pymunk.Space()
+    add_gas(space, engine.make)
     world = engine.translate(space, 1.0 / rate, GAS_METRE)
     start = energy(space)
     world.step(round(seconds * rate))
     world.write_back()
     return energy(space) / start
-
-
-def gas_scene(make: Make, columns: int = 5, rows: int = 4) -> pymunk.Space:
-    """Shapes of mass 1 fly about in a closed box, without gravity and friction, as fast as each other at first."""
-    rng = random.Random(1)
-    space = pymunk.Space()
-    width, height = columns * GAS_PITCH, rows * GAS_PITCH
-    corners = (0.0, 0.0), (width, 0.0), (width, height), (0.0, height)
-    for i, corner in enumerate(corners):
-        wall = pymunk.Segment(space.static_body, corners[i - 1], corner, 0.0)
-        wall.elasticity = 1.0
-        space.add(wall)
-    for i in range(columns * rows):
-        body = pymunk.Body(1.0, moment_for_ellipse(1.0, GAS_A, GAS_B))
-        row, column = divmod(i, columns)
-        body.position = (column + 0.5) * GAS_PITCH, (row + 0.5) * GAS_PITCH
-        body.angle = rng.uniform(0.0, pi)
-        direction = rng.uniform(0.0, 2.0 * pi)
-        body.velocity = GAS_SPEED * cos(direction), GAS_SPEED * sin(direction)
-        shape = make(body, GAS_A, GAS_B)
-        shape.elasticity = 1.0
-        space.add(body, shape)
-    return space
 
 
 def energy(space: pymunk.Space) -> float:

@@ -5,43 +5,52 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 from functools import cache
-from math import cos, hypot, inf, pi, sin, sqrt
+from math import exp, hypot, inf, log, pi, sqrt
 from statistics import median
 from time import thread_time
 
-import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
-from ._stability import (
+from ._builders import (
+    CIRCLE,
     GRAVITY,
-    ROLLING,
-    Make,
+    Kind,
     add_body,
     add_floor,
     add_pile,
-    height,
+    gas_energy,
     mean_square_speed,
-    new_space,
-    one_segment,
-    rock,
-    roll,
-    seconds_to_turn,
-    separation,
     steps,
 )
+from ._oracles import (
+    Flyer,
+    Rolling,
+    bouncing,
+    colliding,
+    half_a_step_on,
+    height,
+    hit,
+    time_to_floor,
+)
+from ._stability import ROLLING, one_segment, rock, roll
 
 A, B, TILT = 20.0, 10.0, 0.2
+DOWN = 0.0, -GRAVITY
 
 
-def period_error(make: Make, dt: float) -> float:
+def semi_axes(kind: Kind) -> tuple[float, float]:
+    """Of what the shape is: a circle is held against what circles do."""
+    return (sqrt(A * B), sqrt(A * B)) if kind is CIRCLE else (A, B)
+
+
+def period_error(kind: Kind, dt: float) -> float:
     """Of the first swing of a rocking ellipse; 1 if it does not swing back twice."""
-    space = new_space()
+    space = kind.new_space()
     add_floor(space)
-    body = add_body(space, make, A, B, 0.0, height(A, B, TILT), TILT)
+    body = add_body(space, kind.make, A, B, 0.0, height(A, B, TILT), TILT)
     crossings = []
     last = TILT
-    expected = 4.0 * seconds_to_turn(A, B, TILT, 0.0)
+    expected = Rolling(A, B, GRAVITY).period(TILT)
     for time in steps(space, 3.0 * expected, dt):
         if last > 0.0 >= body.angle:
             crossings.append(time - dt * body.angle / (body.angle - last))
@@ -51,191 +60,135 @@ def period_error(make: Make, dt: float) -> float:
     return min(1.0, abs((crossings[1] - crossings[0]) / expected - 1.0))
 
 
-def swing_lost(make: Make, dt: float) -> float:
+def swing_lost(kind: Kind, dt: float) -> float:
     """Part of the swing of a rocking ellipse that is lost or gained in 10 s."""
-    return rock(make, dt, 10.0)
+    return rock(kind, dt, 10.0)
 
 
-def rolled_way(seconds: float, count: int = 20000) -> float:
-    """How far an ellipse rolls on a flat floor without slip, by its energy (Runge and Kutta's fourth order)."""
-    a, b, spin = ROLLING
-    spread = (a * a + b * b) / 4.0
-
-    def inertia(angle: float) -> float:
-        h = height(a, b, angle)
-        slope = (a * a - b * b) * sin(angle) * cos(angle) / h
-        return spread + h * h + slope * slope
-
-    start = inertia(0.0) * spin * spin / 2.0 + GRAVITY * b
-
-    def speed(angle: float) -> float:
-        return sqrt(2.0 * (start - GRAVITY * height(a, b, angle)) / inertia(angle))
-
-    angle = way = 0.0
-    step = seconds / count
-    for _ in range(count):
-        k1 = speed(angle)
-        k2 = speed(angle + step / 2.0 * k1)
-        k3 = speed(angle + step / 2.0 * k2)
-        k4 = speed(angle + step * k3)
-        middle = angle + step / 2.0 * k2
-        end = angle + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        way += (
-            step
-            / 6.0
-            * (
-                k1 * height(a, b, angle)
-                + 4.0 * speed(middle) * height(a, b, middle)
-                + speed(end) * height(a, b, end)
-            )
-        )
-        angle = end
-    return way
-
-
-def rolling_error(make: Make, dt: float, seconds: float = 4.0) -> float:
+def rolling_error(kind: Kind, dt: float, seconds: float = 4.0) -> float:
     """How far off an ellipse is after rolling for some seconds, by the way it should have rolled."""
-    path, _energy = roll(make, dt, one_segment, seconds)
-    return float(abs(path[-1, 0] / rolled_way(seconds) - 1.0))
+    a, b, spin = ROLLING
+    path, _energy = roll(kind, dt, one_segment, seconds)
+    _angle, _spin, way = Rolling(a, b, GRAVITY).after(0.0, spin, seconds)
+    return float(abs(path[-1, 0] / way - 1.0))
 
 
-@dataclass(frozen=True)
-class Flight:
-    """Two ellipses in free flight that will hit: positions, angles, velocities and spins."""
-
-    positions: tuple[tuple[float, float], tuple[float, float]]
-    angles: tuple[float, float]
-    velocities: tuple[tuple[float, float], tuple[float, float]]
-    spins: tuple[float, float]
-
-    def bodies(self, space: pymunk.Space, make: Make) -> list[pymunk.Body]:
-        bodies = []
-        for position, angle, velocity, spin in zip(
-            self.positions, self.angles, self.velocities, self.spins, strict=True
-        ):
-            body = add_body(space, make, A, B, *position, angle, friction=0.0)
-            body.velocity = velocity
-            body.angular_velocity = spin
-            bodies.append(body)
-        for shape in space.shapes:
-            shape.elasticity = 1.0
-        return bodies
-
-
-def flights(count: int, seed: int = 4) -> list[Flight]:
-    rng = random.Random(seed)
-    result = []
-    for _ in range(count):
-        aside = rng.uniform(-15.0, 15.0)
-        result.append(
-            Flight(
-                ((-60.0, 0.0), (60.0, aside)),
-                (rng.uniform(0.0, pi), rng.uniform(0.0, pi)),
-                ((100.0, 0.0), (-100.0, 0.0)),
-                (rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0)),
-            )
-        )
-    return result
+def add_flyer(space: pymunk.Space, kind: Kind, flyer: Flyer) -> pymunk.Body:
+    """Add an elastic shape without friction, with the mass and the moment of inertia of an ellipse."""
+    body = pymunk.Body(flyer.mass, flyer.mass * flyer.square)
+    body.position, body.angle = (flyer.x, flyer.y), flyer.angle
+    body.velocity, body.angular_velocity = (flyer.vx, flyer.vy), flyer.spin
+    shape = kind.make(body, flyer.a, flyer.b)
+    shape.elasticity = 1.0
+    space.add(body, shape)
+    return body
 
 
 @cache
-def outcomes(count: int) -> list[tuple[Flight, NDArray[np.float64]]]:
-    """Flights and how each ends."""
-    return [(flight, exact_outcome(flight)) for flight in flights(count)]
-
-
-def exact_outcome(flight: Flight) -> NDArray[np.float64]:
-    """Velocities (x, y) and spins times the radius of gyration after an elastic hit without friction, in rows.
-
-    The time of contact is found by steps that cannot pass it, the normal by looking in all directions.
-    """
-    pair = [pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)]
-
-    def place(time: float) -> float:
-        for i, body in enumerate(pair):
-            (x, y), (vx, vy) = flight.positions[i], flight.velocities[i]
-            body.position = x + time * vx, y + time * vy
-            body.angle = flight.angles[i] + time * flight.spins[i]
-        return separation(pair[0], A, B, pair[1], A, B)
-
-    # No point of one comes closer to the other faster than this, so the steps end at the contact.
-    fastest = sum(hypot(*velocity) for velocity in flight.velocities)
-    fastest += A * sum(abs(spin) for spin in flight.spins)
-    time = 0.0
-    while (distance := place(time)) > 1e-4:
-        time += distance / fastest
-
-    normal = contact_normal(pair)
-    arms = []
-    for body, sign in zip(pair, (1.0, -1.0), strict=True):
-        c, s = body.rotation_vector
-        u, v = c * normal.x + s * normal.y, c * normal.y - s * normal.x
-        size = sign / hypot(A * u, B * v)
-        x, y = A * A * u * size, B * B * v * size
-        arms.append(pymunk.Vec2d(c * x - s * y, s * x + c * y).cross(normal))
-    square = (A * A + B * B) / 4.0
-    velocities = [pymunk.Vec2d(*velocity) for velocity in flight.velocities]
-    closing = (velocities[0] - velocities[1]).dot(normal)
-    closing += arms[0] * flight.spins[0] - arms[1] * flight.spins[1]
-    impulse = 2.0 * closing / (2.0 + (arms[0] ** 2 + arms[1] ** 2) / square)
-    rows = []
-    for velocity, spin, arm, sign in zip(
-        velocities, flight.spins, arms, (-1.0, 1.0), strict=True
-    ):
-        after = velocity + sign * impulse * normal
-        rows.append((*after, (spin + sign * impulse * arm / square) * sqrt(square)))
-    return np.array(rows)
-
-
-def contact_normal(pair: list[pymunk.Body]) -> pymunk.Vec2d:
-    """The direction in which two ellipses are farthest apart, from a scan and a parabola through its highest points."""
-    count = 20000
-    turn = 2.0 * pi / count
-    angles = np.arange(count) * turn
-    dx, dy = pair[1].position - pair[0].position
-    gap = dx * np.cos(angles) + dy * np.sin(angles)
-    for body in pair:
-        t = angles - body.angle
-        gap -= np.hypot(A * np.cos(t), B * np.sin(t))
-    i = int(np.argmax(gap))
-    before, at, after = gap[i - 1], gap[i], gap[(i + 1) % count]
-    shift = (before - after) / (before - 2.0 * at + after) / 2.0
-    return pymunk.Vec2d.from_polar(1.0, float((i + shift) * turn))
-
-
-def collision_error(make: Make, dt: float, count: int = 30) -> float:
-    """How far off velocities and spins are right after elastic hits of two ellipses, rms, by the speed at which they met."""
-    square = (A * A + B * B) / 4.0
-    total = 0.0
-    for flight, expected in outcomes(count):
-        space = new_space(0.0)
-        bodies = flight.bodies(space, make)
-        for body in bodies:
-            # A polygon's own would be an error of another kind.
-            body.moment = square
-        before = bodies[0].velocity
-        for _ in steps(space, 1.5, dt):
-            if bodies[0].velocity != before:
-                break
-        found = np.array(
-            [(*body.velocity, body.angular_velocity * sqrt(square)) for body in bodies]
+def collisions(
+    a: float, b: float, count: int, seconds: float
+) -> list[tuple[tuple[Flyer, ...], tuple[Flyer, ...]]]:
+    """Pairs in free flight that hit each other once, before and after."""
+    rng = random.Random(4)
+    found = []
+    while len(found) < count:
+        first = Flyer(
+            *(a, b, -60.0, 0.0, rng.uniform(0.0, pi), 100.0, 0.0),
+            rng.uniform(-3.0, 3.0),
         )
-        total += float(np.sum((found - expected) ** 2))
+        second = Flyer(
+            *(a, b, 60.0, rng.uniform(-15.0, 15.0), rng.uniform(0.0, pi)),
+            *(-100.0, 0.0, rng.uniform(-3.0, 3.0)),
+        )
+        ends, hits = colliding((first, second), seconds, 1.0, 0.0)
+        if hits == 1:
+            found.append(((first, second), ends))
+    return found
+
+
+def collision_error(kind: Kind, dt: float, count: int = 30) -> float:
+    """How far off velocities and spins are after elastic hits of two ellipses, rms, by the speed at which they met."""
+    a, b = semi_axes(kind)
+    total = 0.0
+    for pair, ends in collisions(a, b, count, 1.1):
+        space = kind.new_space(0.0)
+        bodies = [add_flyer(space, kind, flyer) for flyer in pair]
+        for _ in steps(space, 1.1, dt):
+            pass
+        for body, end in zip(bodies, ends, strict=True):
+            x, y = body.velocity - (end.vx, end.vy)
+            spin = body.angular_velocity - end.spin
+            total += x * x + y * y + end.square * spin * spin
     return sqrt(total / count) / 200.0
+
+
+@cache
+def throws(a: float, b: float, count: int) -> list[tuple[Flyer, float, Flyer]]:
+    """Elastic ellipses that hit a floor two to four times, none soon after another: start, seconds and end."""
+    rng = random.Random(5)
+    found: list[tuple[Flyer, float, Flyer]] = []
+    while len(found) < count:
+        start = Flyer(
+            *(a, b, 0.0, rng.uniform(40.0, 60.0), rng.uniform(-1.5, 1.5)),
+            *(rng.uniform(-30.0, 30.0), 0.0, rng.uniform(-3.0, 3.0)),
+        )
+        end, hits = bouncing(start, 1.2, DOWN, 1.0, 0.0)
+        if hits in (2, 3, 4) and apart(start, 1.2):
+            found.append((start, 1.2, end))
+    return found
+
+
+def apart(flyer: Flyer, seconds: float) -> bool:
+    """Whether no two hits, nor a hit and the end, come within two steps of 1/60 s."""
+    while (time := time_to_floor(flyer, DOWN, seconds)) < seconds:
+        if time < 1.0 / 30.0:
+            return False
+        (flyer,) = hit((flyer.after(time, DOWN),), (0.0, 1.0), 1.0, 0.0)
+        seconds -= time
+    return seconds > 1.0 / 30.0
+
+
+def bounces_error(kind: Kind, dt: float, varies: float = 0.0, count: int = 60) -> float:
+    """How far poses are off after two to four bounces, by the long semi-axis: the geometric mean, with a turn counted as the way of the long end.
+
+    Steps may vary at random by a part of dt.
+    """
+    a, b = semi_axes(kind)
+    rng = random.Random(7)
+    logs = 0.0
+    for start, seconds, end in throws(a, b, count):
+        space = kind.new_space()
+        floor = add_floor(space, 0.0)
+        floor.elasticity = 1.0
+        lengths = [
+            1.0 + varies * rng.uniform(-1.0, 1.0) for _ in range(round(seconds / dt))
+        ]
+        lengths = [length * seconds / sum(lengths) for length in lengths]
+        body = add_flyer(space, kind, half_a_step_on(start, lengths[0], DOWN))
+        for length in lengths:
+            space.step(length)
+        x, y = body.position - (end.x, end.y)
+        logs += log(hypot(x, y, a * (body.angle - end.angle)) / a)
+    return exp(logs / count)
+
+
+def gas_error(kind: Kind, dt: float) -> float:
+    """The part of its energy that an elastic gas gains or loses in a minute."""
+    return abs(gas_energy(kind, dt, 60.0) - 1.0)
 
 
 @dataclass(eq=False)
 class TimedPile:
     """A pile that is stepped and timed."""
 
-    make: Make
+    kind: Kind
     dt: float
     seconds: list[float] = field(default_factory=list)
     squares: list[float] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.space = new_space()
-        self.bodies = add_pile(self.space, self.make)
+        self.space = self.kind.new_space()
+        self.bodies = add_pile(self.space, self.kind.make)
 
     def settle(self, seconds: float) -> None:
         for _ in steps(self.space, seconds, self.dt):

@@ -6,35 +6,34 @@ import csv
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from functools import partial
-from math import inf
+from math import inf, nan
 from pathlib import Path
 from statistics import mean
 from typing import Any
 
-import pymunk
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from tqdm import tqdm
 
-from pymunk_ellipse import Ellipse, backend
+from pymunk_ellipse import backend
 from pymunk_ellipse.narrowphase import common_normal
 from pymunk_ellipse.narrowphase.common_normal import TURN_TOLERANCE
 from pymunk_ellipse.narrowphase.ellipse_ellipse import ellipse_ellipse
 
+from ._builders import CIRCLE, ELLIPSE, EXACT_IMPACTS, Kind, polygon
 from ._methods import Method, Pairs, Score, methods, random_pairs, score
 from ._picture import OUTLINE, save
 from ._scene_errors import (
     TimedPile,
+    bounces_error,
     collision_error,
+    gas_error,
     period_error,
     rolling_error,
     swing_lost,
 )
-from ._shapes import inscribed_polygon
-from ._stability import Make
 from ._variants import replaced
 
 ASPECT_RATIOS = 1.2, 2.0, 5.0, 20.0
@@ -322,16 +321,24 @@ POLYGONS = 8, 16, 32, 64, 128
 QUICK_POLYGONS = 8, 32
 RATES = 60, 120, 240, 480
 QUICK_RATES = (240,)
-ELLIPSE = "ellipse"
+SHIPPED = "ellipse"
+WITH_IMPACTS = "ellipse, exact impacts"
 IN_PYTHON = "ellipse (Python)"
+A_CIRCLE = "circle"
 RATE_COMPARED = 240
 
-ERRORS = {
+# What a circle does not do.
+OF_ELLIPSES = {
     "period of rocking, off by": period_error,
     "swing lost in 10 s": swing_lost,
     "way rolled in 4 s, off by": rolling_error,
-    "outcome of an elastic hit, off by": collision_error,
 }
+OF_ALL = {
+    "outcome of an elastic hit, off by": collision_error,
+    "pose after 2 to 4 bounces, off by (in a)": bounces_error,
+    "energy of an elastic gas, off in a minute by": gas_error,
+}
+ERRORS = OF_ELLIPSES | OF_ALL
 RESTLESSNESS = "speed in a pile at rest"
 PILE_HEIGHT = "height of the pile, off the ellipses' mean by"
 
@@ -348,31 +355,29 @@ class Seen:
 SeenAt = dict[tuple[str, int], Seen]
 
 
-def polygon(body: pymunk.Body, a: float, b: float, count: int) -> pymunk.Shape:
-    return inscribed_polygon(body, a, b, count)
-
-
 def scenes(out: Path, quick: bool) -> None:
     """The chart per scene."""
-    shapes: dict[str, Make] = {ELLIPSE: Ellipse}
+    kinds = {SHIPPED: ELLIPSE, WITH_IMPACTS: EXACT_IMPACTS, A_CIRCLE: CIRCLE}
     for count in QUICK_POLYGONS if quick else POLYGONS:
-        shapes[f"{count}-gon"] = partial(polygon, count=count)
+        kinds[f"{count}-gon"] = polygon(count)
     rates = QUICK_RATES if quick else RATES
-    piles = time_piles(shapes, rates, quick)
+    piles = time_piles(kinds, rates, quick)
     seen: SeenAt = {}
-    heights = [pile.height for (name, _), pile in piles.items() if name == ELLIPSE]
+    heights = [pile.height for (name, _), pile in piles.items() if name == SHIPPED]
     height = mean(heights)
     for (name, rate), pile in tqdm(piles.items(), "scenes", unit="shape and step"):
         if name == IN_PYTHON:
             # It differs from machine code in nothing but time.
-            errors = dict(seen[ELLIPSE, rate].errors)
+            errors = dict(seen[SHIPPED, rate].errors)
         else:
             errors = {
-                label: error(shapes[name], 1.0 / rate)
+                label: nan
+                if name == A_CIRCLE and label in OF_ELLIPSES
+                else error(kinds[name], 1.0 / rate)
                 for label, error in ERRORS.items()
             }
         errors[RESTLESSNESS] = pile.speed
-        errors[PILE_HEIGHT] = pile.height / height - 1.0
+        errors[PILE_HEIGHT] = nan if name == A_CIRCLE else pile.height / height - 1.0
         seen[name, rate] = Seen(pile.milliseconds, errors)
     with open(
         out / "speed_accuracy_scenes.csv", "w", newline="", encoding="utf-8"
@@ -399,18 +404,18 @@ def scenes(out: Path, quick: bool) -> None:
 
 
 def time_piles(
-    shapes: dict[str, Make], rates: Sequence[int], quick: bool
+    kinds: dict[str, Kind], rates: Sequence[int], quick: bool
 ) -> dict[tuple[str, int], TimedPile]:
     """Let the piles come to rest, then step them in turn, round after round."""
     piles = {
-        (name, rate): TimedPile(make, 1.0 / rate)
-        for name, make in shapes.items()
+        (name, rate): TimedPile(kind, 1.0 / rate)
+        for name, kind in kinds.items()
         for rate in rates
     }
     if backend() == "compiled":
         with replaced():
             for rate in rates:
-                piles[IN_PYTHON, rate] = TimedPile(Ellipse, 1.0 / rate)
+                piles[IN_PYTHON, rate] = TimedPile(ELLIPSE, 1.0 / rate)
 
     def at_work(name: str) -> AbstractContextManager[None]:
         """The backend that a pile was made for: no other knows its ellipses."""
@@ -427,26 +432,28 @@ def time_piles(
 
 
 def read_scenes(seen: SeenAt) -> None:
-    """Say which polygon, if any, is as accurate as the ellipse, and at what price."""
-    ellipse = seen[ELLIPSE, RATE_COMPARED]
+    """Say which polygon, if any, is as accurate as the ellipse, at what price, and of what order errors are in the step."""
+    ellipse = seen[SHIPPED, RATE_COMPARED]
     print(
         f"ellipse at 1/{RATE_COMPARED} s: {ellipse.milliseconds:.1f} ms per second of a pile of 60"
     )
+    polygons = {
+        (name, rate): found
+        for (name, rate), found in seen.items()
+        if name.endswith("-gon")
+    }
     for label, error in ellipse.errors.items():
         if label == PILE_HEIGHT:
             # Piles differ by chance.
             continue
         rivals = [
             (found.milliseconds / ellipse.milliseconds, name, rate)
-            for (name, rate), found in seen.items()
-            if not name.startswith(ELLIPSE) and found.errors[label] <= error
+            for (name, rate), found in polygons.items()
+            if found.errors[label] <= error
         ]
         best = min(
-            (
-                (found.errors[label], name, rate)
-                for (name, rate), found in seen.items()
-                if not name.startswith(ELLIPSE)
-            ),
+            (found.errors[label], name, rate)
+            for (name, rate), found in polygons.items()
         )
         print(
             f"  {label} {error:.2g}; best polygon: {best[1]} at 1/{best[2]} s, {best[0]:.2g}; as accurate: "
@@ -456,42 +463,64 @@ def read_scenes(seen: SeenAt) -> None:
                 else "none"
             )
         )
+    rates = sorted({rate for _, rate in seen})
+    for label in OF_ALL:
+        print(f"{label}, by steps per second {rates}:")
+        for name in dict.fromkeys(name for name, _ in seen):
+            if name != IN_PYTHON:
+                errors = [seen[name, rate].errors[label] for rate in rates]
+                print(f"  {name:24}" + "".join(f"{error:10.2g}" for error in errors))
+    costs = [
+        f"{seen[WITH_IMPACTS, rate].milliseconds / seen[SHIPPED, rate].milliseconds:.3f}"
+        for rate in rates
+    ]
+    print(f"cost of exact impacts in a pile at rest, by that without: {costs}")
 
 
 def draw_scenes(seen: SeenAt) -> Figure:
     """A panel for each error, a line for each shape through its steps."""
     labels = [*ERRORS, RESTLESSNESS, PILE_HEIGHT]
     names = list(dict.fromkeys(name for name, _rate in seen))
-    figure = Figure(figsize=(12.0, 7.0), layout="constrained")
-    panels = figure.subplots(2, 3, sharex=True).flat
+    figure = Figure(figsize=(13.0, 7.6), layout="constrained")
+    panels = figure.subplots(2, 4, sharex=True).flat
     shades = colormaps["viridis"]
-    polygons = [name for name in names if not name.startswith(ELLIPSE)]
-    colors = dict.fromkeys(names, "C3") | {
+    polygons = [name for name in names if name.endswith("-gon")]
+    colors = {
+        SHIPPED: "C3",
+        IN_PYTHON: "C3",
+        WITH_IMPACTS: "C1",
+        A_CIRCLE: OUTLINE,
+    } | {
         name: shades(0.85 * index / max(1, len(polygons) - 1))
         for index, name in enumerate(polygons)
     }
     for axes, label in zip(panels, labels, strict=True):
         logarithmic = label != PILE_HEIGHT
-        least = 1e-9 if logarithmic else -1.0
+        least = 1e-13 if logarithmic else -1.0
         for name in names:
             points = [
                 (found.milliseconds, max(found.errors[label], least), rate)
                 for (other, rate), found in seen.items()
                 if other == name
             ]
-            ours = name.startswith(ELLIPSE)
+            ours = name.startswith(SHIPPED)
             axes.plot(
                 [point[0] for point in points],
                 [point[1] for point in points],
                 color=colors[name],
                 linestyle=":" if name == IN_PYTHON else "-",
-                linewidth=2.0 if ours else 1.0,
+                # Where it changes nothing it shows behind the line of the ellipse.
+                linewidth=5.0 if name == WITH_IMPACTS else 2.0 if ours else 1.0,
+                zorder=1.5 if name == WITH_IMPACTS else 2.0,
                 marker="o",
                 markersize=4,
                 label=name,
             )
             if ours:
                 for time, error, rate in points:
+                    shipped = seen[SHIPPED, rate].errors[label]
+                    if name == WITH_IMPACTS and 0.5 < error / shipped < 2.0:
+                        continue
                     axes.annotate(
                         f"1/{rate}",
                         (time, error),

@@ -10,18 +10,16 @@ from functools import partial
 from math import isfinite
 from pathlib import Path
 
-import pymunk
 from matplotlib.figure import Figure
 from tqdm import tqdm
 
-from pymunk_ellipse import Ellipse, backend
+from pymunk_ellipse import backend
 
+from ._builders import ELLIPSE, EXACT_IMPACTS, Kind, polygon
 from ._picture import save
-from ._shapes import inscribed_polygon
 from ._stability import (
     ROLLING,
     SCENES,
-    Make,
     Scene,
     highest_stack,
     joined_segments,
@@ -34,39 +32,31 @@ from ._variants import VARIANTS, shipped
 SEGMENT_LENGTHS = 0.5, 1.0, 2.0, 5.0
 # By how much the step of a scene is made larger.
 LARGE_STEP = 4.0
-QUICK_WAYS = "ellipse", "16-gon"
+WITH_IMPACTS = "exact impacts"
+QUICK_WAYS = "ellipse", WITH_IMPACTS, "16-gon"
 # Long runs in Python that a quick run leaves out.
 LONG = ("rocking for minutes",)
 
 
 @dataclass(frozen=True)
 class Way:
-    """How a scene is run: with which shapes, contacts and step."""
+    """How a scene is run: with which shapes and spaces, contacts and step."""
 
-    make: Make
+    kind: Kind
     contacts: Callable[[], AbstractContextManager[None]] = shipped
     times_step: float = 1.0
 
     def measure(self, scene: Scene) -> float:
         with self.contacts():
-            return scene.run(self.make, self.times_step * scene.step)
-
-
-def polygon(count: int) -> Make:
-    """Makes polygons cut from the ellipse."""
-
-    def make(body: pymunk.Body, a: float, b: float) -> pymunk.Shape:
-        return inscribed_polygon(body, a, b, count)
-
-    return make
+            return scene.run(self.kind, self.times_step * scene.step)
 
 
 def ways() -> dict[str, Way]:
-    result = {"ellipse": Way(Ellipse)}
+    result = {"ellipse": Way(ELLIPSE), WITH_IMPACTS: Way(EXACT_IMPACTS)}
     for name, contacts in VARIANTS.items():
         if contacts is not shipped:
-            result[name] = Way(Ellipse, contacts)
-    result[f"{LARGE_STEP:g} times the step"] = Way(Ellipse, times_step=LARGE_STEP)
+            result[name] = Way(ELLIPSE, contacts)
+    result[f"{LARGE_STEP:g} times the step"] = Way(ELLIPSE, times_step=LARGE_STEP)
     for count in (16, 64):
         result[f"{count}-gon"] = Way(polygon(count))
     return result
@@ -117,10 +107,10 @@ def run(out: Path, quick: bool) -> None:
                 partial(tiles, length=length),
             )
             dt = SCENES["tiles"].step
-            off = [off_path(Ellipse, dt, ground) for ground in grounds]
+            off = [off_path(ELLIPSE, dt, ground) for ground in grounds]
             table.writerow([times, *(f"{part:.5f}" for part in off)])
             print(f"{times:10g}  {off[0]:8.5f}  {off[1]:18.5f}  {off[2]:5.5f}")
-    print(f"part of the swing lost in a minute: {rock(Ellipse, 1 / 240, 60.0):.5f}")
+    print(f"part of the swing lost in a minute: {rock(ELLIPSE, 1 / 240, 60.0):.5f}")
     print(f"tables: {out / 'stability.csv'}, {out / 'floors.csv'}")
     save(draw(scenes, list(chosen), measured), out / "stability.png")
 

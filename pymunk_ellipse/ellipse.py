@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from .contacts.pair import ShapeContact
 
 
+# Of an ellipse that has touched nothing: long before a space's first step.
+NO_STEP = -2
+
+
 class ShapeDistance(NamedTuple):
     """How far two shapes are apart, and where; see :py:meth:`Ellipse.distance`."""
 
@@ -410,7 +414,9 @@ class Ellipse(pymunk.Poly):
         new = reference()
         if new is not None:
             # They are of another space.
-            hull_at(self._shape).touches = [0] * 16
+            cp_hull = hull_at(self._shape)
+            cp_hull.touches = [0] * 16
+            cp_hull.touched_in = NO_STEP
             handler.enter(new)
 
     def __getstate__(self) -> dict[str, list[tuple[str, Any]]]:

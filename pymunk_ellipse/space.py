@@ -79,8 +79,9 @@ class Space(EventSpace):
         ellipses, and none that last.
 
         As they are without it stay contacts with a joint on one of the bodies, with a custom
-        velocity or position function, of sensors, and of ellipses that are round about their
-        centre of gravity with each other and with pymunk's own shapes. Two bodies that hit each
+        velocity or position function, of sensors, of ellipses that have touched something else in
+        this step or the last one, and of ellipses that are round about their centre of
+        gravity with each other and with pymunk's own shapes. Two bodies that hit each
         other are moved on only as far as neither goes more than three quarters of half its
         thickness in a step, so that none comes through a wall behind it. How far apart the two
         contact points are is no depth in such a collision: each is that of the impact, moved with

@@ -403,6 +403,49 @@ def test_deep_overlaps_stay_as_they_are():
 # Callbacks
 
 
+def test_what_touches_something_else_stays_as_it_is():
+    """The impulse of a hit is not that of two bodies alone where one of them lies on a floor."""
+    paths = []
+    for exact in (True, False):
+        space = new_space(exact)
+        add_floor(space, friction=1.0)
+        lying = Flyer(20.0, 10.0, 0.0, 10.0)
+        body = add_flyer(space, lying, elasticity=0.0)
+        hitting = add_flyer(space, Flyer(20.0, 10.0, 5.0, 60.0, 0.4, vy=-300.0), 0.5)
+        path = []
+        for _ in range(12):
+            space.step(1 / 60)
+            path += [*body.position, body.angle, *hitting.position, hitting.angle]
+        assert hitting.velocity.y > -300.0
+        paths.append(path)
+    assert paths[0] == paths[1]
+
+
+@pytest.mark.parametrize("prepare", ["sensor", "ignored"])
+def test_what_is_no_obstacle_is_not_touched(prepare):
+    """An impact within a sensor, or within what a callback ignores, is one at its own time."""
+    heights = []
+    for there in (True, False):
+        space = new_space()
+        add_floor(space, elasticity=1.0)
+        body = add_flyer(space, Flyer(20.0, 10.0, 0.0, 50.0, 0.3, vy=-200.0))
+        if there:
+            zone = pymunk.Circle(space.static_body, 1000)
+            space.add(zone)
+            if prepare == "sensor":
+                zone.sensor = True
+            else:
+                zone.collision_type = 7
+                space.on_collision(7, 0, pre_solve=ignore)
+        step(space, 0.3, 1 / 60)
+        heights.append(body.position.y)
+    assert heights[0] == heights[1]
+
+
+def ignore(arbiter, space, data):
+    arbiter.process_collision = False
+
+
 def test_callbacks_see_the_contact_of_the_impact():
     flyer = thrown(0.6, (1,), 0.8)[0]
     space = new_space()

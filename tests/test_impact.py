@@ -189,27 +189,30 @@ def test_rolling_is_no_impact(dt):
         un, _ut = relative_velocity(body, floor, meeting)
         radius = (20.0 * 10.0) ** 2 / h**3
         speed = lasting_speed(body, floor, meeting, radius, 0.0, 500.0, dt)
-        assert -un < speed
+        # To the order of the step.
+        assert -un < speed * (1 + 3 * dt)
     assert hypot(*arm) > 10.0
 
 
 @pytest.mark.parametrize("dt", [1 / 30, 1 / 60, 1 / 240])
 def test_what_has_not_touched_for_a_step_is_no_impact(dt):
-    """An ellipse that has rolled on nothing for a step comes down no faster than what lasts."""
+    """An ellipse that rolls, and on nothing for a step, comes down no faster than what lasts."""
     rolling = Rolling(20.0, 10.0, 500.0)
     floor = 0.0, 0.0, 0.0, 0.0, 0.0
     for angle in (0.0, 0.3, 1.0, pi / 2, 2.0):
-        spin = 5.0
-        x, y = rolling.velocity(angle, spin)
+        # Its velocity is that of the first step's middle, and gravity's of one step.
+        middle, spin, _way = rolling.after(angle, 5.0, dt / 2, 20)
+        x, y = rolling.velocity(middle, spin)
         left = Flyer(20.0, 10.0, 0.0, rolling.height(angle), angle, x, y, spin)
-        back = left.after(dt, (0.0, -500.0))
+        once = left.after(dt)
+        back = replace(once, vy=once.vy - 500.0 * dt).after(dt)
         px, py = back.support(0.0, -1.0)
         meeting = (0.0, 0.0, -1.0, px, py, px, py)
         un, _ut = relative_velocity(motion(back), floor, meeting)
         radius = (20.0 * 10.0) ** 2 / rolling.height(back.angle) ** 3
         speed = lasting_speed(motion(back), floor, meeting, radius, 0.0, 500.0, dt)
         # To the order of the step.
-        assert -un < speed * (1 + 10 * dt)
+        assert -un < speed * (1 + 3 * dt)
 
 
 def test_a_throw_is_an_impact():

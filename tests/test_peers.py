@@ -10,12 +10,14 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pymunk
 import pytest
 
 pytest.importorskip("matplotlib", reason="needs the extra demos")
 
 from demos import peers, pile, rocking
 from demos._box import STEP, filled_box
+from demos._builders import add_gas
 from demos._methods import Pairs, exact_contacts
 from demos._peers_pairs import (
     CASES,
@@ -29,7 +31,6 @@ from demos._peers_scenes import (
     METRE,
     energy,
     engines_of_pymunk,
-    gas_scene,
     overlaps,
 )
 
@@ -160,7 +161,8 @@ for module in INSTALLED.values():
 
 @pytest.mark.parametrize("engine", ENGINES, ids=str)
 def test_engine_takes_a_scene_over(engine):
-    space = gas_scene(engine.make)
+    space = pymunk.Space()
+    add_gas(space, engine.make)
     # Other lengths than the scene's.
     world = engine.translate(space, 1.0 / 240.0, 2.0)
     before = [(*body.position, body.angle, *body.velocity) for body in space.bodies]
@@ -211,7 +213,8 @@ def test_engine_lets_a_flat_one_fall_to_the_floor(engine):
 def test_overlaps_are_those_of_ellipses_not_of_hulls():
     ellipses, circles, *_ = engines_of_pymunk()
     for engine in ellipses, circles:
-        space = gas_scene(engine.make)
+        space = pymunk.Space()
+        add_gas(space, engine.make)
         assert len(overlaps(space)) == 0
         first, second, *_ = space.bodies
         first.angle = second.angle = 0.0

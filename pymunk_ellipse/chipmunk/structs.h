@@ -105,6 +105,8 @@ typedef struct {
     /* The last contacts with other shapes, four words each and a normal; see contacts/handover.py. */
     intptr_t touches[16];
     double normals[8];
+    /* The last step in which it touched anything. */
+    intptr_t touched_in;
 } Hull;
 
 typedef struct {

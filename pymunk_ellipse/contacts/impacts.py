@@ -51,8 +51,8 @@ def impact_of(
 ) -> tuple[float, Meeting]:
     """How long ago an ellipse and another shape, which have a new contact, have hit each other, and how; NO_IMPACT if they did not in this step.
 
-    There is none either where the impulse cannot be told ahead. shape is that of the ellipse, on
-    its body.
+    There is none either where the impulse cannot be told ahead, because something else pushes
+    one of them as well. shape is that of the ellipse, on its body.
     """
     one = motion_of(body)
     another = motion_of(other_body)
@@ -62,6 +62,8 @@ def impact_of(
         and other.sensor == 0
         and is_free(body, space)
         and is_free(other_body, space)
+        and touched_nothing(shape, space)
+        and touched_nothing(other, space)
     ):
         return NO_IMPACT, now
     return when_met(ellipse, other, contact, one, another, space)
@@ -77,6 +79,20 @@ def is_free(body: Any, space: Any) -> bool:
         and body.position_func == usual.position_func
     )
     return integrated and body.constraints == 0
+
+
+def mark_touched(shape: Any, space: Any) -> None:
+    """Note that an ellipse has a contact in this step."""
+    if shape.klass == ellipse_class():
+        hull_at(shape).touched_in = space.stamp
+
+
+def touched_nothing(shape: Any, space: Any) -> bool:
+    """Whether an ellipse has had no contact in the last step and none in this one so far; of other shapes it is not known."""
+    if shape.klass != ellipse_class():
+        return True
+    ago: int = space.stamp - hull_at(shape).touched_in
+    return ago != 0 and ago != 1
 
 
 def when_met(

@@ -16,7 +16,7 @@ from ..chipmunk.structs import (
 from ..narrowphase.frame import normal_at
 from ..narrowphase.rolling import rolling_velocity, same_contact, with_restitution
 from .handover import keep_contact, last_on_body
-from .impacts import NO_IMPACT, carry_on, impact_of
+from .impacts import NO_IMPACT, carry_on, impact_of, mark_touched
 from .pair import contact_of
 
 # How far a round ellipse's centre may be off the centre of gravity, in its radius.
@@ -175,8 +175,16 @@ def complete(address: int, space_address: int) -> None:
     surface = arbiter.surface_vr
     surface.x += roll_x
     surface.y += roll_y
-    if point.bounce != NO_IMPACT and arbiter.processCollision != 0:
-        carry_on(arbiter, space_at(space_address), point.bounce)
+    if arbiter.processCollision == 0:
+        return
+    space = space_at(space_address)
+    if point.bounce != NO_IMPACT:
+        carry_on(arbiter, space, point.bounce)
+    shape_a = arbiter.shape_a
+    shape_b = arbiter.shape_b
+    if shape_a.sensor == 0 and shape_b.sensor == 0:
+        mark_touched(shape_a, space)
+        mark_touched(shape_b, space)
 
 
 def name_of(arbiter: Any, address: int) -> int:

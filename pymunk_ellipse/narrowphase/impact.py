@@ -47,18 +47,24 @@ def lasting_speed(
     A contact that lasts gains the speed of gravity in a step, and two of rolling, for each body
     with a spin w, a radius of curvature rho (zero for corners) and its centre of gravity at the
     height h above the tangent: w^2 rho dt/2, because it rolls about where it will touch in the
-    middle of the step, or w^2 (rho - h) dt if for a step it touched nothing, h'' being rho - h.
+    middle of the step, or w^2 (rho - h) 2 dt if for a step it touched nothing. h'' is rho - h,
+    and the velocity is the one of the middle of that step, three halves of a step ago; half a
+    step more is for what the curvature has changed since.
     """
     _distance, nx, ny, x, y, ox, oy = meeting
     spin = one[4]
     other_spin = other[4]
     height = x * nx + y * ny
     other_height = -(ox * nx + oy * ny)
-    rolling = spin * spin * max(0.5 * curvature_radius, curvature_radius - height)
+    rolling = (
+        spin * spin * max(0.5 * curvature_radius, 2.0 * (curvature_radius - height))
+    )
     other_rolling = (
         other_spin
         * other_spin
-        * max(0.5 * other_curvature_radius, other_curvature_radius - other_height)
+        * max(
+            0.5 * other_curvature_radius, 2.0 * (other_curvature_radius - other_height)
+        )
     )
     return (gravity + rolling + other_rolling) * dt
 

@@ -185,14 +185,18 @@ class TimedPile:
     dt: float
     seconds: list[float] = field(default_factory=list)
     squares: list[float] = field(default_factory=list)
+    settling: float = 0.0
 
     def __post_init__(self) -> None:
         self.space = self.kind.new_space()
         self.bodies = add_pile(self.space, self.kind.make)
 
     def settle(self, seconds: float) -> None:
+        """Step for some time of the pile's own, and note how long that takes."""
+        start = thread_time()
         for _ in steps(self.space, seconds, self.dt):
             pass
+        self.settling = thread_time() - start
 
     def time(self, seconds: float) -> None:
         """Step for some time of the pile's own, and note how long a second of it takes."""

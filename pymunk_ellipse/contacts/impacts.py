@@ -21,8 +21,9 @@ from ..narrowphase.impact import (
 )
 from .pair import contact_of, half_thickness
 
-# The time of a meeting that is no impact.
+# In place of the time of an impact: where there is none, and where none is asked for.
 NO_IMPACT = -1.0
+SWITCHED_OFF = -2.0
 
 # How far a body may move in the step after it was hit by another one, in half of what its shape
 # is thick. If it is carried on farther, it may pass a thin wall behind it.

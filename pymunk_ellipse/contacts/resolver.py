@@ -16,7 +16,7 @@ from ..chipmunk.structs import (
 from ..narrowphase.frame import normal_at
 from ..narrowphase.rolling import rolling_velocity, same_contact, with_restitution
 from .handover import keep_contact, last_on_body
-from .impacts import NO_IMPACT, carry_on, impact_of, mark_touched
+from .impacts import NO_IMPACT, SWITCHED_OFF, carry_on, impact_of, mark_touched
 from .pair import contact_of
 
 # How far a round ellipse's centre may be off the centre of gravity, in its radius.
@@ -111,7 +111,7 @@ def resolve(address: int, space_address: int, exact_impacts: bool) -> None:
             hull_at(mine), other.on_body, space.stamp, mx, my
         )
     roll_x = roll_y = 0.0
-    time = NO_IMPACT
+    time = NO_IMPACT if exact_impacts else SWITCHED_OFF
     if rolls:
         roll_x, roll_y = rolling_velocity(
             body.w, other_body.w, x - last_x, y - last_y, ox - last_ox, oy - last_oy
@@ -175,7 +175,7 @@ def complete(address: int, space_address: int) -> None:
     surface = arbiter.surface_vr
     surface.x += roll_x
     surface.y += roll_y
-    if arbiter.processCollision == 0:
+    if point.bounce == SWITCHED_OFF or arbiter.processCollision == 0:
         return
     space = space_at(space_address)
     if point.bounce != NO_IMPACT:

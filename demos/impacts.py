@@ -88,7 +88,7 @@ def draw(
     gases: dict[str, list[float]],
 ) -> Figure:
     """Errors of the bounces, and what the gas has gained or lost, against the step."""
-    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(10.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     for name, errors in bounces.items():
         left.plot(rates, errors, "o-", label=name, color=COLORS[name])
@@ -107,7 +107,6 @@ def draw(
         axes.set_xlabel("step (s)")
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
-    left.set_ylim(1e-4, None)
-    for axes, place in ((left, "lower left"), (right, "center right")):
-        axes.legend(fontsize="small", loc=place)
+    handles, labels = left.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from math import isfinite
 from pathlib import Path
+from textwrap import fill
 
 from matplotlib.figure import Figure
 from tqdm import tqdm
@@ -112,7 +113,7 @@ def run(out: Path, quick: bool) -> None:
             print(f"{times:10g}  {off[0]:8.5f}  {off[1]:18.5f}  {off[2]:5.5f}")
     print(f"part of the swing lost in a minute: {rock(ELLIPSE, 1 / 240, 60.0):.5f}")
     print(f"tables: {out / 'stability.csv'}, {out / 'floors.csv'}")
-    save(draw(scenes, list(chosen), measured), out / "stability.png")
+    save(draw(scenes, list(chosen), measured), out / "stability.png", dpi=100)
 
 
 def draw(
@@ -144,7 +145,7 @@ def draw(
             )
     axes.set_xticks(
         [column + 0.5 for column in range(len(ways))],
-        [way.replace(" ", "\n", 1) for way in ways],
+        [fill(way, 10) for way in ways],
         fontsize="small",
     )
     axes.xaxis.tick_top()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Hashable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from statistics import median
@@ -39,12 +39,16 @@ class Course:
 
 @dataclass(frozen=True)
 class Runner:
-    """A pile to time: its shapes, how far they reach, and the backend that resolves ellipses in it."""
+    """A pile to time: its shapes, how far they reach, and the backend that resolves ellipses in it.
+
+    A pile without ellipses runs in the process of the best backend, beside the ellipses of that:
+    two processes may run on cores that are not equally fast.
+    """
 
     make_shape: MakeShape
     reach: float
     course: Course
-    backend: str = "python"
+    backend: str = field(default_factory=backend)
 
 
 class Times(Generic[Name]):

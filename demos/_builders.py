@@ -131,27 +131,31 @@ def mean_square_speed(bodies: list[pymunk.Body]) -> float:
     return sum(body.kinetic_energy for body in bodies) / len(bodies)
 
 
-GAS_A, GAS_B = 10.0, 5.0
-GAS_PITCH = 24.0
-
-
-def add_gas(space: pymunk.Space, make: Make, columns: int = 5, rows: int = 4) -> None:
+def add_gas(
+    space: pymunk.Space,
+    make: Make,
+    a: float = 10.0,
+    b: float = 5.0,
+    columns: int = 5,
+    rows: int = 4,
+) -> None:
     """Elastic shapes of mass 1 without friction in a closed box, all as fast at first; the space should have no gravity."""
     rng = random.Random(1)
-    width, height = columns * GAS_PITCH, rows * GAS_PITCH
+    pitch = 2.4 * a
+    width, height = columns * pitch, rows * pitch
     corners = (0.0, 0.0), (width, 0.0), (width, height), (0.0, height)
     for i, corner in enumerate(corners):
         wall = pymunk.Segment(space.static_body, corners[i - 1], corner, 0.0)
         wall.elasticity = 1.0
         space.add(wall)
     for i in range(columns * rows):
-        body = pymunk.Body(1.0, moment_for_ellipse(1.0, GAS_A, GAS_B))
+        body = pymunk.Body(1.0, moment_for_ellipse(1.0, a, b))
         row, column = divmod(i, columns)
-        body.position = (column + 0.5) * GAS_PITCH, (row + 0.5) * GAS_PITCH
+        body.position = (column + 0.5) * pitch, (row + 0.5) * pitch
         body.angle = rng.uniform(0.0, pi)
         direction = rng.uniform(0.0, 2.0 * pi)
         body.velocity = 100.0 * cos(direction), 100.0 * sin(direction)
-        shape = make(body, GAS_A, GAS_B)
+        shape = make(body, a, b)
         shape.elasticity = 1.0
         space.add(body, shape)
 

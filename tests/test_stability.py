@@ -7,7 +7,15 @@ from statistics import median
 
 import pytest
 
-from demos._builders import ELLIPSE, EXACT_IMPACTS, GRAVITY, Kind, polygon
+from demos._builders import (
+    ELLIPSE,
+    EXACT_IMPACTS,
+    GRAVITY,
+    Kind,
+    add_gas,
+    polygon,
+    steps,
+)
 from demos._oracles import Rolling
 from demos._stability import (
     SCENES,
@@ -77,6 +85,45 @@ def test_bound_is_broken_without_a_safeguard(name, variant):
 )
 def test_bound_is_broken_by_a_polygon(name):
     assert not measured(name, polygon(16)) <= SCENES[name].bound
+
+
+@pytest.mark.parametrize("kind", [ELLIPSE, EXACT_IMPACTS], ids=["plain", "exact"])
+@pytest.mark.parametrize("rate", [60, 120])
+@pytest.mark.parametrize("aspect_ratio", [1.5, 2.0, 3.0])
+def test_gas_keeps_its_energy_and_shares_it(aspect_ratio, rate, kind):
+    space = kind.new_space(0.0)
+    b = 5.0
+    add_gas(space, kind.make, aspect_ratio * b, b)
+    start = sum(body.kinetic_energy for body in space.bodies)
+    shares = []
+    for time in steps(space, 60.0, 1 / rate):
+        energy = sum(body.kinetic_energy for body in space.bodies)
+        assert energy == pytest.approx(start, rel=0.01)
+        if time > 10.0:
+            turning = sum(
+                body.moment * body.angular_velocity**2 for body in space.bodies
+            )
+            shares.append(turning / energy)
+    # One of three degrees of freedom each has.
+    assert sum(shares) / len(shares) == pytest.approx(1 / 3, abs=0.05)
+
+
+@pytest.mark.parametrize("kind", [ELLIPSE, EXACT_IMPACTS], ids=["plain", "exact"])
+@pytest.mark.parametrize("aspect_ratio", [1.5, 3.0])
+def test_gas_with_friction_gains_nothing(aspect_ratio, kind):
+    """In a single hit it may: Newton's law of restitution and Coulomb's of friction do not go together."""
+    space = kind.new_space(0.0)
+    add_gas(space, kind.make, aspect_ratio * 5.0, 5.0)
+    for shape in space.shapes:
+        shape.friction = 0.5
+    start = sum(body.kinetic_energy for body in space.bodies)
+    energies = [
+        sum(body.kinetic_energy for body in space.bodies) / start
+        for _ in steps(space, 60.0, 1 / 60)
+    ]
+    assert max(energies) <= 1.001
+    # A quarter of a minute is enough to lose some for certain.
+    assert max(energies[900:]) < 0.95
 
 
 # Those whose end is another with the least change of the start.

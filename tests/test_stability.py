@@ -57,7 +57,6 @@ def test_ellipse_keeps_the_bound(name):
         ("elastic roller", "elastic rolling"),
         ("elastic roller", "no rolling correction"),
         ("wheel off its centre", "no rolling of wheels"),
-        ("mixed pile", "no warm start"),
     ],
 )
 def test_bound_is_broken_without_a_safeguard(name, variant):

@@ -421,6 +421,21 @@ def test_what_touches_something_else_stays_as_it_is():
     assert paths[0] == paths[1]
 
 
+def test_bodies_that_no_impulse_moves_go_on():
+    """A kinematic body that comes upon what is static, or kinematic as well."""
+    for body_type in (pymunk.Body.KINEMATIC, pymunk.Body.STATIC):
+        space = new_space()
+        moving = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        moving.velocity = 400, 0
+        still = pymunk.Body(body_type=body_type)
+        still.position = 50, 3
+        shapes = Ellipse(moving, 20, 10), Ellipse(still, 20, 10)
+        space.add(moving, still, *shapes)
+        step(space, 0.25, 1 / 60)
+        assert moving.position == pytest.approx((100, 0))
+        assert still.position == (50, 3)
+
+
 @pytest.mark.parametrize("prepare", ["sensor", "ignored"])
 def test_what_is_no_obstacle_is_not_touched(prepare):
     """An impact within a sensor, or within what a callback ignores, is one at its own time."""

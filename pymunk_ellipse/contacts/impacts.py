@@ -61,6 +61,8 @@ def impact_of(
     if not (
         shape.sensor == 0
         and other.sensor == 0
+        # No impulse moves one of two kinematic bodies.
+        and body.m_inv + other_body.m_inv > 0.0
         and is_free(body, space)
         and is_free(other_body, space)
         and touched_nothing(shape, space)

@@ -6,7 +6,7 @@ import csv
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from math import inf, nan
+from math import inf, isclose, nan
 from pathlib import Path
 from statistics import mean
 from typing import Any
@@ -525,7 +525,7 @@ def draw_scenes(seen: SeenAt) -> Figure:
             if ours:
                 for time, error, rate in points:
                     shipped = seen[SHIPPED, rate].errors[label]
-                    if name == WITH_IMPACTS and 0.5 < error / shipped < 2.0:
+                    if name == WITH_IMPACTS and isclose(error, shipped, rel_tol=0.5):
                         continue
                     axes.annotate(
                         f"1/{rate}",

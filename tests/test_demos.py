@@ -160,6 +160,19 @@ def test_stability_keeps_all_bounds(quick_run):
 
 
 @pytest.mark.demo
+def test_exact_impacts_are_charted_as_what_they_are(quick_run):
+    _, out = quick_run("speed_accuracy")
+    rows = {row["shape"]: row for row in table(out / "speed_accuracy_scenes.csv")}
+    plain, exact = rows["ellipse"], rows["ellipse, exact impacts"]
+    assert float(exact["outcome of an elastic hit, off by"]) < 1e-9
+    bounces = "pose after 2 to 4 bounces, off by (in a)"
+    assert float(exact[bounces]) < 0.1 * float(plain[bounces])
+    gas = "energy of an elastic gas, off in a minute by"
+    assert float(exact[gas]) < 0.01
+    assert float(rows["32-gon"][gas]) > 1.0
+
+
+@pytest.mark.demo
 def test_failure_map_finds_no_wrong_contact_of_the_package(quick_run):
     output, _ = quick_run("failure_map")
     wrong = number_after("part of the pairs for which the shipped method is", output)

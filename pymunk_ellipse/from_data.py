@@ -24,8 +24,11 @@ __all__ = [
 class EllipseParameters(NamedTuple):
     """What an Ellipse is made of, in the order of its arguments, as in ``Ellipse(body, *parameters)``."""
 
+    #: The semi-axis at the angle.
     a: float
+    #: The semi-axis across it.
     b: float
+    #: The centre.
     offset: Vec2d
     #: The angle of a (radians), from -pi/2 to pi/2; 0 where a and b are equal.
     angle: float

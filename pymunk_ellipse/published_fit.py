@@ -24,18 +24,26 @@ MOVE_TOLERANCE = 1e-13
 class PlacedEllipse(NamedTuple):
     """An ellipse in the world: its semi-axes, its centre, and the angle of a (radians)."""
 
+    #: The semi-axis at the angle.
     a: float
+    #: The semi-axis across it.
     b: float
+    #: The centre's first coordinate.
     x: float
+    #: The centre's second coordinate.
     y: float
+    #: The angle of a (radians).
     angle: float = 0.0
 
 
 class FittedCircle(NamedTuple):
     """An osculating circle of an ellipse: its centre in the world, and its radius."""
 
+    #: The centre's first coordinate.
     x: float
+    #: The centre's second coordinate.
     y: float
+    #: The radius.
     radius: float
 
 

@@ -31,10 +31,10 @@ from .wide_rays import overlooked_ellipses
 class Space(EventSpace):
     """A :py:class:`pymunk.Space` in which everything to be observed is the ellipse.
 
-    On a plain pymunk.Space contacts and queries with ellipses are exact as well, but callbacks,
+    In a plain pymunk.Space contacts and queries of ellipses are exact as well, but callbacks,
     :py:meth:`shape_query` and drawing see their hulls. Here callbacks are called when ellipses
     touch, :py:meth:`debug_draw` draws their outlines, and :py:meth:`segment_query` with a radius
-    overlooks none. It is used like pymunk's own, and all that is without ellipses is pymunk's own.
+    overlooks none. It is used like pymunk's own. Whatever has no ellipse in it is as in pymunk.
 
     As in pymunk, queries of the space see shapes where the last step, or the last
     :py:meth:`pymunk.Space.reindex_shapes_for_body`, left them.
@@ -70,22 +70,25 @@ class Space(EventSpace):
     def exact_impacts(self) -> bool:
         """Whether shapes that meet within a step collide where and when they met (False).
 
-        pymunk moves bodies by whole steps, and has shapes that met on the way collide where the
-        step has left them, overlapped. What comes of it is off in proportion to the step. With
-        this switched on, a contact that is new, and too fast to be one that goes on, has the
-        normal and the points of the time of the impact, and the bodies are moved on as
-        the impact would have moved them since. Bounces, landings and collisions
-        are then off in proportion to the square of the step. It changes only contacts of
-        ellipses, and none that last.
+        pymunk moves bodies by whole steps. Shapes that met on the way collide where the step has
+        left them, overlapped. So the outcome is off in proportion to the step. With this switched
+        on, a new contact that comes in fast has the normal and the points of the moment of the
+        impact, and the bodies are moved on as the impact would have moved them since. Bounces,
+        landings and collisions are then off in proportion to the square of the step. It changes
+        only contacts of ellipses, and none that last.
 
-        As they are without it stay contacts with a joint on one of the bodies, with a custom
-        velocity or position function, of sensors, of ellipses that have touched something else in
-        this step or the last one, and of ellipses that are round about their centre of
-        gravity with each other and with pymunk's own shapes. Two bodies that hit each
-        other are moved on only as far as neither goes more than three quarters of half its
-        thickness in a step, so that none comes through a wall behind it. How far apart the two
-        contact points are is no depth in such a collision: each is that of the impact, moved with
-        its body since.
+        These contacts stay as they are without it:
+
+        - those of an ellipse that has touched something else in this step or the last one,
+        - those of a body that has a joint, or a velocity or position function of its own,
+        - those of sensors,
+        - those of ellipses that are round about their centre of gravity, with each other and with
+          pymunk's own shapes.
+
+        Two bodies that hit each other are moved on only so far that neither goes more than three
+        quarters of half its thickness in a step. So none passes through a wall behind it. In such
+        a collision the distance of the two contact points is no depth: each is the point of the
+        impact, moved with its body since.
 
         >>> import pymunk
         >>> heights = []

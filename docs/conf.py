@@ -55,5 +55,18 @@ def public_bases(
         bases[bases.index(base) : bases.index(base) + 1] = base.__bases__
 
 
+def no_named_tuple_text(
+    app: Sphinx,
+    what: str,
+    name: str,
+    documented: type,
+    options: object,
+    lines: list[str],
+) -> None:
+    """Leave out what Python says of the constructor of every named tuple: the signature says it."""
+    lines[:] = [line for line in lines if not line.startswith("Create new instance of")]
+
+
 def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-bases", public_bases)
+    app.connect("autodoc-process-docstring", no_named_tuple_text)

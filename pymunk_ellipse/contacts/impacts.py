@@ -95,7 +95,7 @@ def touched_nothing(shape: Any, space: Any) -> bool:
     if shape.klass != ellipse_class():
         return True
     ago: int = space.stamp - hull_at(shape).touched_in
-    return ago != 0 and ago != 1
+    return ago > 1
 
 
 def when_met(

@@ -145,9 +145,8 @@ def add_gas(
     width, height = columns * pitch, rows * pitch
     corners = (0.0, 0.0), (width, 0.0), (width, height), (0.0, height)
     for i, corner in enumerate(corners):
-        wall = pymunk.Segment(space.static_body, corners[i - 1], corner, 0.0)
+        wall = add_wall(space, corners[i - 1], corner, 0.0)
         wall.elasticity = 1.0
-        space.add(wall)
     for i in range(columns * rows):
         body = pymunk.Body(1.0, moment_for_ellipse(1.0, a, b))
         row, column = divmod(i, columns)
@@ -160,11 +159,17 @@ def add_gas(
         space.add(body, shape)
 
 
+def kinetic_energy(space: pymunk.Space) -> float:
+    """Of all bodies."""
+    # body.kinetic_energy is twice the kinetic energy.
+    return sum(body.kinetic_energy for body in space.bodies) / 2.0
+
+
 def gas_energy(kind: Kind, dt: float, seconds: float) -> float:
     """The energy that an elastic gas has after some time, by that at the start."""
     space = kind.new_space(0.0)
     add_gas(space, kind.make)
-    start = sum(body.kinetic_energy for body in space.bodies)
+    start = kinetic_energy(space)
     for _ in steps(space, seconds, dt):
         pass
-    return sum(body.kinetic_energy for body in space.bodies) / start
+    return kinetic_energy(space) / start

@@ -9,9 +9,10 @@ import Box2D
 import numpy as np
 import pymunk
 
+from ._builders import CIRCLE, polygon
 from ._methods import Pairs
 from ._peers_pairs import PairMethod, Placed, Prepared, each
-from ._peers_scenes import Engine, circle, polygon
+from ._peers_scenes import Engine
 
 NAME = "Box2D"
 VERTICES = Box2D.b2_maxPolygonVertices
@@ -87,8 +88,8 @@ def deepest(
 
 def engines() -> list[Engine]:
     return [
-        Engine(NAME, "circles", circle, Box2DWorld),
-        Engine(NAME, f"{VERTICES}-gons", polygon(VERTICES), Box2DWorld),
+        Engine(NAME, "circles", CIRCLE.make, Box2DWorld),
+        Engine(NAME, f"{VERTICES}-gons", polygon(VERTICES).make, Box2DWorld),
     ]
 
 

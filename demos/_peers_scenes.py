@@ -17,10 +17,9 @@ from pymunk_ellipse import Ellipse
 
 from . import pile, rocking
 from ._box import GRAVITY, STEP, filled_box
-from ._builders import Make, add_gas
+from ._builders import CIRCLE, Make, add_gas, kinetic_energy, polygon
 from ._peers_pairs import touching
 from ._race import CLOCK
-from ._shapes import circle_of_equal_area, inscribed_polygon
 
 # The scenes with gravity are as large as they have to be for it to be the earth's.
 METRE = GRAVITY / 9.81
@@ -67,20 +66,12 @@ class PymunkWorld:
         pass
 
 
-def circle(body: pymunk.Body, a: float, b: float) -> pymunk.Shape:
-    return circle_of_equal_area(body, a, b)
-
-
-def polygon(count: int) -> Make:
-    return partial(inscribed_polygon, count=count)
-
-
 def engines_of_pymunk() -> list[Engine]:
     return [
         Engine("pymunk_ellipse", "ellipses", Ellipse, PymunkWorld),
-        Engine("pymunk", "circles", circle, PymunkWorld),
+        Engine("pymunk", "circles", CIRCLE.make, PymunkWorld),
         *(
-            Engine("pymunk", f"{count}-gons", polygon(count), PymunkWorld)
+            Engine("pymunk", f"{count}-gons", polygon(count).make, PymunkWorld)
             for count in POLYGON_COUNTS
         ),
     ]
@@ -201,12 +192,7 @@ def gas(engine: Engine, rate: int, seconds: float) -> float:
     space = pymunk.Space()
     add_gas(space, engine.make)
     world = engine.translate(space, 1.0 / rate, GAS_METRE)
-    start = energy(space)
+    start = kinetic_energy(space)
     world.step(round(seconds * rate))
     world.write_back()
-    return energy(space) / start
-
-
-def energy(space: pymunk.Space) -> float:
-    # body.kinetic_energy is twice the kinetic energy.
-    return sum(body.kinetic_energy for body in space.bodies) / 2.0
+    return kinetic_energy(space) / start

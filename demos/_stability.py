@@ -495,38 +495,36 @@ def elastic_gas(kind: Kind, dt: float) -> float:
 
 def add_roller(
     space: pymunk.Space,
-    kind: Kind,
+    body: pymunk.Body,
+    shape: pymunk.Shape,
     rolling: Rolling,
     spin: float,
     dt: float,
     elasticity: float = 0.0,
-) -> pymunk.Body:
-    """A shape that rolls on a floor, at the angle zero, begun so that its velocity is that of half a step on."""
+) -> None:
+    """Add a floor and a body that rolls on it, at the angle zero, begun so that its velocity is that of half a step on."""
     floor = add_floor(space)
     floor.elasticity = elasticity
-    ahead, ahead_spin, _way = rolling.after(0.0, spin, dt / 2.0, 20)
-    x, y = rolling.offset
-    square = rolling.square or (rolling.a**2 + rolling.b**2) / 4.0
-    body = pymunk.Body(1.0, square)
-    # The body's origin is the centre of the shape.
-    body.center_of_gravity = x, y
-    body.position = -x, rolling.height(0.0) - y
-    shape = kind.make(body, rolling.a, rolling.b)
-    shape.friction = NO_SLIP
     shape.elasticity = 1.0
-    body.angular_velocity = ahead_spin
+    shape.friction = NO_SLIP
+    ahead, ahead_spin, _way = rolling.after(0.0, spin, dt / 2.0, 20)
+    x, y = body.center_of_gravity
+    body.position = -x, rolling.height(0.0) - y
     body.velocity = rolling.velocity(ahead, ahead_spin)
+    body.angular_velocity = ahead_spin
     space.add(body, shape)
-    return body
 
 
 @scene("elastic roller", "off the way it rolls in 10 s / way", 0.002)
 def elastic_roller(kind: Kind, dt: float) -> float:
     """An ellipse that rolls without slip does not bounce, and goes as far as one without elasticity."""
-    rolling = Rolling(20.0, 14.0, GRAVITY)
-    _angle, _spin, way = rolling.after(0.0, -5.0, 10.0)
+    a, b, spin = 20.0, 14.0, -5.0
+    rolling = Rolling(a, b, GRAVITY)
+    _angle, _spin, way = rolling.after(0.0, spin, 10.0)
     space = kind.new_space()
-    body = add_roller(space, kind, rolling, -5.0, dt, elasticity=0.8)
+    body = pymunk.Body(1.0, (a * a + b * b) / 4.0)
+    shape = kind.make(body, a, b)
+    add_roller(space, body, shape, rolling, spin, dt, elasticity=0.8)
     for _ in steps(space, 10.0, dt):
         pass
     return abs(body.position.x / way - 1.0)
@@ -535,15 +533,19 @@ def elastic_roller(kind: Kind, dt: float) -> float:
 @scene("wheel off its centre", "energy gained or lost in 10 s", 0.001)
 def wheel_off_its_centre(kind: Kind, dt: float) -> float:
     """A round wheel with its centre of gravity beside the centre rolls without slip, faster and slower, and loses nothing."""
-    rolling = Rolling(10.0, 10.0, GRAVITY, (-3.0, 0.0), 50.0)
+    radius, square, spin = 10.0, 50.0, -8.0
+    beside = -3.0, 0.0
+    rolling = Rolling(radius, radius, GRAVITY, beside, square)
     space = kind.new_space()
-    body = add_roller(space, kind, rolling, -8.0, dt)
+    body = pymunk.Body(1.0, square)
+    body.center_of_gravity = beside
+    add_roller(space, body, kind.make(body, radius, radius), rolling, spin, dt)
     for _ in steps(space, 10.0, dt):
         pass
     center = body.local_to_world(body.center_of_gravity)
     # The velocity is that of half a step on.
     lifted = GRAVITY * (center.y + body.velocity.y * dt / 2.0)
-    return abs((body.kinetic_energy / 2.0 + lifted) / rolling.energy(0.0, -8.0) - 1.0)
+    return abs((body.kinetic_energy / 2.0 + lifted) / rolling.energy(0.0, spin) - 1.0)
 
 
 @scene("cam", "follower off the cam's height / b", 0.01)

@@ -56,7 +56,7 @@ def run(out: Path, quick: bool) -> None:
     finders[ELLIPSE] = exact
     times = race(
         {
-            (name, seed): Runner(make, A, replace(course, seed=seed), backend())
+            (name, seed): Runner(make, A, replace(course, seed=seed))
             for name, make in shapes.items()
             for seed in seeds
         },

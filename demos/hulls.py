@@ -102,7 +102,6 @@ class Timing:
                 partial(EllipseWithHull, a=a, b=b, hull_kind=hull_kind),
                 max(a, b),
                 replace(course, seed=seed),
-                backend(),
             )
             for name, hull_kind in made.items()
             for seed in seeds

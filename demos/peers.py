@@ -12,6 +12,7 @@ from tqdm import tqdm
 from pymunk_ellipse import backend
 
 from . import rocking
+from ._builders import CIRCLE
 from ._peers_charts import draw_pairs, draw_scenes, draw_small
 from ._peers_pairs import (
     CASES,
@@ -25,7 +26,6 @@ from ._peers_scenes import (
     Engine,
     PileSize,
     Seen,
-    circle,
     engines_of_pymunk,
     gas,
     period_off,
@@ -94,7 +94,7 @@ def scenes(peers: list[ModuleType], quick: bool) -> dict[Engine, Seen]:
         seen,
     )
     for engine in tqdm(engines, "rocking and gas", unit="engine"):
-        if engine.make is not circle:
+        if engine.make is not CIRCLE.make:
             for tilt in rocking.TILTS:
                 seen[engine].rocking[tilt] = rock(engine, tilt)
         for rate in RATES[-1:] if quick else RATES:

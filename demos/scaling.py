@@ -41,14 +41,14 @@ def course(bodies: int) -> Course:
 
 def runners(bodies: int) -> dict[str, Runner]:
     """The same pile of each kind of shape."""
-    makers: dict[str, tuple[MakeShape, str]] = {
-        "circles": (partial(circle_of_equal_area, a=A, b=B), "python"),
-        "16-gons": (partial(inscribed_polygon, a=A, b=B, count=16), "python"),
-        "ellipses": (partial(Ellipse, a=A, b=B), backend()),
+    makers: dict[str, MakeShape] = {
+        "circles": partial(circle_of_equal_area, a=A, b=B),
+        "16-gons": partial(inscribed_polygon, a=A, b=B, count=16),
+        "ellipses": partial(Ellipse, a=A, b=B),
     }
     return {
-        name: Runner(make_shape, A, course(bodies), chosen)
-        for name, (make_shape, chosen) in makers.items()
+        name: Runner(make_shape, A, course(bodies))
+        for name, make_shape in makers.items()
     }
 
 

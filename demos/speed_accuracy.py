@@ -443,7 +443,7 @@ def time_piles(
 
 
 def read_scenes(seen: SeenAt) -> None:
-    """Say which polygon, if any, is as accurate as the ellipse, at what price, and of what order errors are in the step."""
+    """Say which polygon, if any, is as accurate as the ellipse, at what price, and how errors fall with the step."""
     ellipse = seen[SHIPPED, RATE_COMPARED]
     print(
         f"ellipse at 1/{RATE_COMPARED} s: {ellipse.milliseconds:.1f} ms per second of a pile of 60"

@@ -9,6 +9,7 @@ import pymunk
 import pytest
 
 from demos._oracles import Rolling
+from demos._stability import add_roller
 from demos._variants import (
     shipped,
     with_elastic_rolling,
@@ -45,15 +46,7 @@ def test_without_restitution_rolling_is_what_it_was():
 def roll(body, shape, rolling, spin, elasticity, seconds, dt, space, prepare=None):
     """Let a body that is at the angle zero roll on a floor without slip, from a velocity of half a step on."""
     space.gravity = 0, -GRAVITY
-    floor = pymunk.Segment(space.static_body, (-1e4, 0), (1e4, 0), 0)
-    floor.friction = shape.friction = 10
-    floor.elasticity = elasticity
-    shape.elasticity = 1
-    ahead, ahead_spin, _way = rolling.after(0.0, spin, dt / 2, 20)
-    body.position = 0, rolling.height(0.0)
-    body.velocity = rolling.velocity(ahead, ahead_spin)
-    body.angular_velocity = ahead_spin
-    space.add(floor, body, shape)
+    add_roller(space, body, shape, rolling, spin, dt, elasticity)
     if prepare is not None:
         prepare(space)
     for _ in range(round(seconds / dt)):

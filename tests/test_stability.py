@@ -178,6 +178,21 @@ def test_rocking_dies_down_without_the_rolling_correction():
     assert rock(ELLIPSE, 1 / 240, 20.0) < 1e-3
 
 
+def test_exact_impacts_lose_nothing_that_is_squeezed():
+    """Starts in which a light ellipse came out of the box where impacts were those of two bodies alone."""
+
+    def damped(seed):
+        def make_space():
+            space = EXACT_IMPACTS.make_space()
+            space.damping = 1 - 4e-5 * seed
+            return space
+
+        return Kind(EXACT_IMPACTS.make, make_space)
+
+    depths = [measured("heavy on light", damped(seed)) for seed in (15, 16, 17, 19, 31)]
+    assert max(depths) < 1.0
+
+
 def test_highest_stacks():
     # a^2 > b^2 for one and a^2 > 3 b^2 for two, by hand.
     assert highest_stack(1.01, 1.0) == 1
